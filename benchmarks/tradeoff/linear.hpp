@@ -11,14 +11,16 @@
 
 namespace tradeoff {
 
-/// A servo without virtual coupling: the spheres are at the device position, and the force is that of the tissue only.
+/// A servo without virtual coupling: the spheres are at the device position, and the force is that of the tissue only;
+/// `corrected`: less its expected error.
 template <TissueModel Tissue>
 class RenderedTissue {
  public:
-  RenderedTissue(Tissue& tissue, const PressScene& scene)
-      : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled()),
+  RenderedTissue(Tissue& tissue, const PressScene& scene, bool corrected = false)
+      : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled(corrected)),
         states_(scene.spheres.size()),
-        forces_(scene.spheres.size()) {}
+        forces_(scene.spheres.size()),
+        corrected_(corrected) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) noexcept {
     for (std::size_t b = 0; b < centres.size(); ++b) {
@@ -27,7 +29,11 @@ class RenderedTissue {
     }
     ++count_;
     for (const GatedForce& f : servo_.tick(states_)) status_ |= f.status;
-    for (std::size_t b = 0; b < forces_.size(); ++b) forces_[b] = servo_.contact_force(b);
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      forces_[b] = servo_.contact_force(b);
+      const double size = forces_[b].norm();
+      if (corrected_ && size > 0.0) forces_[b] *= servo_.force_error(b).force / size;
+    }
     return forces_;
   }
   auto& servo() noexcept { return servo_; }
@@ -46,15 +52,17 @@ class RenderedTissue {
   }
 
  private:
-  static ServoOptions uncoupled() {
+  static ServoOptions uncoupled(bool corrected) {
     ServoOptions options;
     options.coupling_stiffness = infinity;
+    options.corrected_force = corrected;
     return options;
   }
 
   HapticServo servo_;
   std::vector<ToolState> states_;
   std::vector<Vector3> forces_;
+  bool corrected_;
   Status status_;
   long count_ = 0;
 };
@@ -106,11 +114,11 @@ class LinearContender : public Contender {
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
-  LinearContender(const Bench& bench, const std::function<Model()>& make)
+  LinearContender(const Bench& bench, const std::function<Model()>& make, bool corrected)
       : bench_(bench),
         model_(make()),
         tissue_(model_),
-        rendered_(model_, bench_.scene),
+        rendered_(model_, bench_.scene, corrected),
         u_(3 * model_.mesh().node_count()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }

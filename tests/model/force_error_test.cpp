@@ -13,7 +13,9 @@
 
 #include "catch.hpp"
 
+#include <array>
 #include <cmath>
+#include <sstream>
 
 using namespace palpate;
 
@@ -243,7 +245,86 @@ BarredPress press_lobe(Model& model, double radius, double x, double depth) {
   return {servo.contact_force().z(), servo.force_error(), {}};
 }
 
+/// Force on the upper one of two spheres that pinch the lobe there, each pressed to a depth.
+template <class Model>
+double pinch_lobe(Model& model, double radius, double x, double depth) {
+  ServoOptions options;
+  options.coupling_stiffness = infinity;
+  options.contact.capacity = 400;
+  HapticServo servo(model, {SphereTool{radius}, SphereTool{radius}}, options);
+  std::array<ToolState, 2> states;
+  for (int i = 0; i <= 60; ++i) {
+    const double out = radius - depth * std::min(1.0, i / 20.0);
+    for (ToolState& state : states) state.time += 1e-3;
+    states[0].position = {x, 0.5 * bending_lobe.y(), bending_lobe.z() + out};
+    states[1].position = {x, 0.5 * bending_lobe.y(), -out};
+    servo.tick(states);
+  }
+  return servo.contact_force(0).z();
+}
+
+Scene two_sided_lobe(const TouchOptions& options) {
+  return Scene().fix("x0").touch("z0").touch("z1", options);
+}
+
 }  // namespace
+
+TEST_CASE("a part that is pinched is measured with two spheres, which do not bend it", "[force_error][pinched]") {
+  const double radius = 10e-3, depth = radius / 8.0;
+  const Mesh<Tet4> given = box_tet4(bending_lobe, {20, 12, 3});
+  const auto made = [&](bool pinched) {
+    return HapticFEModel<Smoothed<Tet4>, LinearElastic>(copy_mesh<Smoothed<Tet4>>(given),
+                                                        two_sided_lobe({.radius = radius, .pinched = pinched}),
+                                                        soft_material(), {.force_error = measured_force_error()});
+  };
+  auto single = made(false), model = made(true);
+  const AccuracyReport &one = single.report().accuracy, &two = model.report().accuracy;
+  CHECK(one.pinched == 0);
+  REQUIRE(two.pinched == two.places);
+  double squares = 0.0;
+  const std::array<double, 3> places{0.05, 0.0717, 0.0475};  // a vertex, between, the middle of an edge
+  for (const double x : places) {
+    const Vector3 above(x, 0.5 * bending_lobe.y(), bending_lobe.z()), below(x, 0.5 * bending_lobe.y(), 0.0);
+    Scene scene;
+    scene.fix("x0").touch(where::sphere(above, 0.7 * radius) || where::sphere(below, 0.7 * radius));
+    HapticFEModel<Tet10, LinearElastic> fine(
+        promote<Tet10>(refine_near(given, PointCloud{{above, below}}, {radius / 5.0, 0.5})), scene, soft_material());
+    const double truth = pinch_lobe(fine, radius, x, depth), force = pinch_lobe(model, radius, x, depth);
+    CAPTURE(x, truth, force);
+    CHECK(force > truth);
+    squares += std::pow(force / truth - 1.0, 2);
+  }
+  const double error = std::sqrt(squares / static_cast<double>(places.size()));
+  CAPTURE(error, one.typical, two.typical, one.nodes, two.nodes);
+  CHECK(two.typical == Approx(error).epsilon(0.4));
+  CHECK(one.typical < 0.6 * error);  // a lobe that bends away hides the error
+  CHECK(two.largest >= two.typical);
+  std::ostringstream text;
+  text << model.report();
+  CHECK(text.str().find("at 3 places, 3 of them also pinched") != std::string::npos);
+}
+
+TEST_CASE("a scene that is pinched needs opposite sides, of which one place is found", "[force_error][pinched]") {
+  const TouchOptions options{.radius = 8e-3, .pinched = true};
+  const Mesh<Tet4> block = block_with_cells(8);
+  const auto accuracy = [&](const Scene& scene) {
+    return HapticFEModel<Tet4, LinearElastic>(block, scene, soft_material(), {.force_error = measured_force_error(1)})
+        .report()
+        .accuracy;
+  };
+  const AccuracyReport top = accuracy(Scene().fix("z0").touch("z1", options));
+  CHECK(top.places == 1);
+  CHECK(top.pinched == 0);
+  CHECK(top.remark.find("opposite") != std::string::npos);
+  // There is no opposite side below the middle of the top, but there is one beside it.
+  const auto end = where::above({0.035, 0.0, 0.0}, Vector3::UnitX()) && where::below({0.0, 0.0, 1e-6});
+  const AccuracyReport both = accuracy(Scene().fix("x0").touch("z1", options).touch(end));
+  CHECK(both.places == 2);
+  CHECK(both.pinched == 1);
+  CHECK(both.remark.empty());
+  CHECK(Scene().touch("a", options).touch("b").is_pinched());
+  CHECK_FALSE(Scene().touch("a", {.radius = 1e-3}).is_pinched());
+}
 
 TEST_CASE("the error of a body that bends is measured, too", "[force_error]") {
   // Near nu = 0.5 a lobe with three layers is too stiff by a tenth, everywhere, not only near the contact.

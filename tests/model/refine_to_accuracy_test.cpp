@@ -6,6 +6,7 @@
 #include <palpate/mesh/refine_near_touched.hpp>
 #include <palpate/model/static/refine_to_accuracy.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -82,6 +83,44 @@ TEST_CASE("a mesh is refined until the force error is within the goal", "[model]
   text << refined.search;
   CHECK(text.str().find("force error wanted: 8 %") != std::string::npos);
   CHECK(text.str().find("not reached") == std::string::npos);
+}
+
+TEST_CASE("a part that is pinched is refined until the error of a pinch is within the goal",
+          "[model][refine_to_accuracy]") {
+  const Vector3 above(0.05, 0.02, 0.012), below(0.05, 0.02, 0.0);
+  const Mesh<Tet4> mesh = box_tet4({0.07, 0.04, 0.012}, {14, 8, 3});
+  const auto pinched_force = [&](auto& model) {
+    ServoOptions rigid;
+    rigid.coupling_stiffness = infinity;
+    rigid.contact.capacity = 400;
+    HapticServo servo(model, {SphereTool{accurate_radius}, SphereTool{accurate_radius}}, rigid);
+    std::array<ToolState, 2> states;
+    for (int k = 0; k <= 60; ++k) {
+      const double out = accurate_radius * (1.0 - 0.125 * std::min(1.0, k / 20.0));
+      for (ToolState& state : states) state.time = 1e-3 * k;
+      states[0].position = above + out * Vector3::UnitZ();
+      states[1].position = below - out * Vector3::UnitZ();
+      servo.tick(states);
+    }
+    return servo.contact_force(0).z();
+  };
+  const auto refined = [&](bool pinched) {
+    const Scene scene = Scene().fix("x0").touch(where::sphere(above, 0.014) || where::sphere(below, 0.014),
+                                                {.radius = accurate_radius, .pinched = pinched});
+    return refine_to_accuracy<AccurateBlock>(mesh, scene, accurate_material, {.error = 0.08, .places = 1});
+  };
+  auto single = refined(false), pinched = refined(true);
+  INFO(single.search << pinched.search);
+  REQUIRE(single.search.reached());
+  REQUIRE(pinched.search.reached());
+  CHECK(pinched.model.report().accuracy.pinched == 1);
+  const Mesh<Tet4> finer = refine_near(pinched.mesh, where::sphere(above, 0.003) || where::sphere(below, 0.003),
+                                       {0.15 * accurate_radius, 0.6});
+  HapticFEModel<Tet10, LinearElastic, Condensed<SelectiveInverse>> exact(promote<Tet10>(finer), pinched.scene,
+                                                                         accurate_material);
+  const double truth = pinched_force(exact);
+  CHECK(std::abs(pinched_force(single.model) / truth - 1.0) > 0.1);  // a single sphere bends the part: 0.8 %
+  CHECK(std::abs(pinched_force(pinched.model) / truth - 1.0) < 0.08);
 }
 
 TEST_CASE("an error measured against a reference made of the mesh before refinement is the same",

@@ -35,6 +35,9 @@ struct TouchOptions {
   /// Radius of the smallest sphere that will touch [m]; 0: not known. A static model measures the error of the forces
   /// on that sphere if its options say so (model/static/measured_force_error.hpp).
   double radius = 0.0;
+  /// Whether two such spheres may pinch: press at once from opposite sides, where both can be touched. The measured
+  /// error is then the larger one of a single sphere and of two.
+  bool pinched = false;
 };
 
 /// The conditions of a scene. Stores groups by name only; selections are resolved, and unknown or empty ones refused,
@@ -115,6 +118,8 @@ class Scene {
   const std::vector<Selection>& rendered() const noexcept { return rendered_; }
   /// Least radius of the spheres that will touch [m]; 0: not known.
   double touch_radius() const noexcept { return touch_radius_; }
+  /// Whether two spheres may pinch some part (TouchOptions::pinched).
+  bool is_pinched() const noexcept { return is_pinched_; }
   const Vector3& gravity() const noexcept { return gravity_; }
 
   /// The same scene with every selection of nodes replaced by what `change` makes of it.
@@ -141,6 +146,7 @@ class Scene {
   std::vector<Selection> rendered_;
   Vector3 gravity_ = Vector3::Zero();
   double touch_radius_ = 0.0;
+  bool is_pinched_ = false;
 };
 
 /// Text that lists all loads, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".

@@ -81,6 +81,7 @@ PALPATE_INLINE Scene& Scene::touch(Selection where, const TouchOptions& options)
           "Give a positive radius, or none");
   if (options.radius > 0.0)
     touch_radius_ = touch_radius_ > 0.0 ? std::min(touch_radius_, options.radius) : options.radius;
+  is_pinched_ = is_pinched_ || options.pinched;
   touched_.push_back(std::move(where));
   return *this;
 }

@@ -50,7 +50,9 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const SetupReport& r)
   if (r.accuracy.places > 0)
     out << "  force error of a sphere of " << number(1e3 * r.accuracy.radius)
         << " mm, pressed in by an eighth of that: " << number(100.0 * r.accuracy.typical) << " % typically, "
-        << number(100.0 * r.accuracy.largest) << " % at most, at " << r.accuracy.places << " places\n";
+        << number(100.0 * r.accuracy.largest) << " % at most, at " << r.accuracy.places << " places"
+        << (r.accuracy.pinched > 0 ? ", " + std::to_string(r.accuracy.pinched) + " of them also pinched" : "")
+        << (r.accuracy.remark.empty() ? "" : "; " + r.accuracy.remark) << '\n';
   else if (!r.accuracy.remark.empty())
     out << "  force error: not measured, " << r.accuracy.remark << '\n';
   if (!r.cache.file.empty()) out << "  cache: " << r.cache << '\n';

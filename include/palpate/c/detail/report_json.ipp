@@ -103,6 +103,7 @@ std::string accuracy(const AccuracyReport& r) {
   return Object()
       .add("radius", r.radius)
       .add("places", r.places)
+      .add("pinched", r.pinched)
       .add("typical", r.typical)
       .add("largest", r.largest)
       .add("facet", r.facet)

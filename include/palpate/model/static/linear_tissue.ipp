@@ -86,7 +86,7 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   if (radius > 0.0)
     surface_.set_force_accuracy(
         options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_, to_world().translation(),
-                         radius, options.places, node_map(), options.coarse},
+                         radius, scene().is_pinched(), options.places, node_map(), options.coarse},
                         TissueView(*this), limits(), setup_report()));
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";

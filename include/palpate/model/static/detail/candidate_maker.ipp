@@ -29,7 +29,8 @@ inline Scene scene_at_rest(const Scene& scene) {
       if (values[c]) zero[c] = 0.0;
     rest.prescribe(where, zero);
   }
-  for (const Selection& part : scene.touched()) rest.touch(part, {.radius = scene.touch_radius()});
+  for (const Selection& part : scene.touched())
+    rest.touch(part, {.radius = scene.touch_radius(), .pinched = scene.is_pinched()});
   return rest;
 }
 
@@ -46,6 +47,7 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
             contact_surface(),
             to_world().translation(),
             scene().touch_radius(),
+            scene().is_pinched(),
             places,
             node_map(),
             nullptr};

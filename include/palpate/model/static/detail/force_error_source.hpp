@@ -16,6 +16,7 @@ struct ForceErrorSource {
   const ContactSurface& surface;        ///< touchable, under its loads
   Vector3 origin;                       ///< of the frame of the surface, in the frame of the tools [m]
   double radius;                        ///< of the sphere that touches [m]
+  bool pinched;                         ///< whether two may press from opposite sides at once
   int places;                           ///< where it is pressed
   const std::vector<NodeId>& node_map;  ///< node of `body` for every node of the mesh as given, -1 for dropped ones
   const MeshRef* coarse;                ///< ForceErrorOptions::coarse

@@ -17,7 +17,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
 /// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
 /// a sixth of the radius there and at most a third of the body's thickness elsewhere, with the same supports. At equal
-/// depth the forces differ by the error of the mesh.
+/// depth the forces differ by the error of the mesh. If the scene is pinched, a second sphere then presses the opposite
+/// side as well, to the same depth: a thin part does not bend, so what the mesh misses is a larger part of the depth.
 class ForceErrorMeasurement {
  public:
   /// Chooses the places.
@@ -42,20 +43,35 @@ class ForceErrorMeasurement {
  private:
   using Positions = std::array<SurfacePoint, MissingDepth::positions>;
   using Presses = std::array<std::vector<PressedPoint>, MissingDepth::positions>;
+  static constexpr std::size_t summarised = 2;  // of `depths`: an eighth of the radius, for the report
+  struct Compared {
+    Presses given, reference;
+  };
+  /// A point on a triangle of the surface.
+  struct Spot {
+    int triangle = -1;
+    Vector3 weights = Vector3::Zero();
+  };
   struct Place {
     int vertex = 0, triangle = 0;
     double length = 0.0, modulus = 0.0;  // of its facets [m], [Pa]
-    Presses given, reference;
+    Compared single, pinched;            // `pinched` is empty where there is no opposite spot
+    std::array<std::optional<Spot>, MissingDepth::positions> opposite;
   };
 
   std::vector<int> inner_vertices() const;
   void choose_places();
-  void add_place(int vertex);
+  Place place_at(int vertex) const;
+  std::optional<Spot> opposite_of(const SurfacePoint& point) const;
   double own_error(double depth) const;
   FacetScale scale_at(int vertex) const;
   /// The points of a place on a surface with these positions of the vertices.
   template <class PositionOf>
   Positions points(const Place& place, PositionOf position) const;
+  template <class PositionOf>
+  SurfacePoint point_at(const Spot& spot, PositionOf position) const;
+  template <class PositionOf>
+  void press(const TissueView& tissue, int capacity, Presses Compared::*presses, PositionOf position);
   std::vector<double> depths() const;
   std::optional<double> relative_missing(const Place& place, std::size_t position, std::size_t depth) const;
   MissingDepth missing(const Place& place) const;

@@ -58,7 +58,8 @@ PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
   return inner;
 }
 
-/// Farthest point sampling, from the vertex nearest to the middle of the surface.
+/// Farthest point sampling, from the vertex nearest to the middle of the surface. Where nothing can be pinched at these
+/// places, but at another one, that is added.
 PALPATE_INLINE void ForceErrorMeasurement::choose_places() {
   const ContactSurface& surface = source_.surface;
   std::vector<int> vertices = inner_vertices();
@@ -72,7 +73,7 @@ PALPATE_INLINE void ForceErrorMeasurement::choose_places() {
   std::vector<double> distance(vertices.size(), infinity);
   int next = vertices.empty() ? -1 : *std::min_element(vertices.begin(), vertices.end(), from(middle));
   while (next >= 0 && static_cast<int>(places_.size()) < source_.places) {
-    add_place(next);
+    places_.push_back(place_at(next));
     double farthest = 0.0;
     const Vector3 last = surface.position(next);
     next = -1;
@@ -84,9 +85,17 @@ PALPATE_INLINE void ForceErrorMeasurement::choose_places() {
       }
     }
   }
+  const auto can_be_pinched = [](const Place& p) { return p.opposite.front().has_value(); };
+  if (!source_.pinched || std::ranges::any_of(places_, can_be_pinched)) return;
+  for (const int v : vertices)
+    if (Place place = place_at(v); can_be_pinched(place)) {
+      places_.push_back(std::move(place));
+      return;
+    }
+  report_.remark = "nothing is pinched: the touchable surface has no opposite sides";
 }
 
-PALPATE_INLINE void ForceErrorMeasurement::add_place(int vertex) {
+PALPATE_INLINE ForceErrorMeasurement::Place ForceErrorMeasurement::place_at(int vertex) const {
   const ContactSurface& surface = source_.surface;
   const auto at = surface.triangles_at(vertex);
   std::vector<int> triangles(at.begin(), at.end());
@@ -99,7 +108,36 @@ PALPATE_INLINE void ForceErrorMeasurement::add_place(int vertex) {
   place.triangle = *middle;
   place.length = scale.length;
   place.modulus = scale.material.modulus;
-  places_.push_back(std::move(place));
+  if (!source_.pinched) return place;
+  const Positions at_rest = points(place, [&](int v) -> Vector3 { return surface.position(v); });
+  for (std::size_t p = 0; p < at_rest.size(); ++p) place.opposite[p] = opposite_of(at_rest[p]);
+  return place;
+}
+
+/// The nearest point behind, if the surface there faces away within 45 degrees: a sphere on a steep side would slip.
+PALPATE_INLINE std::optional<ForceErrorMeasurement::Spot> ForceErrorMeasurement::opposite_of(
+    const SurfacePoint& point) const {
+  constexpr double least_cosine = 0.7;
+  const ContactSurface& surface = source_.surface;
+  std::optional<Spot> spot;
+  double nearest = infinity;
+  for (std::size_t t = 0; t < surface.triangles().size(); ++t) {
+    const Triangle& v = surface.triangles()[t];
+    const auto exit = exit_through(point, surface.position(v[0]), surface.position(v[1]), surface.position(v[2]));
+    if (!exit || exit->distance >= nearest) continue;
+    nearest = exit->distance;
+    spot = Spot{static_cast<int>(t), exit->weights};
+  }
+  const auto position = [&](int v) -> Vector3 { return surface.position(v); };
+  if (spot && point_at(*spot, position).outward.dot(point.outward) > -least_cosine) spot.reset();
+  return spot;
+}
+
+template <class PositionOf>
+SurfacePoint ForceErrorMeasurement::point_at(const Spot& spot, PositionOf position) const {
+  const Triangle& v = source_.surface.triangle(spot.triangle);
+  const Vector3 a = position(v[0]), b = position(v[1]), c = position(v[2]);
+  return {spot.weights[0] * a + spot.weights[1] * b + spot.weights[2] * c, (b - a).cross(c - a).normalized()};
 }
 
 template <class PositionOf>
@@ -125,13 +163,29 @@ PALPATE_INLINE std::vector<double> ForceErrorMeasurement::depths() const {
   return depths;
 }
 
-PALPATE_INLINE void ForceErrorMeasurement::press_given(const TissueView& tissue) {
-  HapticServo servo(tissue, ToolList(SphereTool{source_.radius}), rigid_press_options(0), {});
-  const auto position = [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); };
+/// Presses every place of a tissue whose surface has these positions of the vertices. Spheres that pinch a thin part
+/// would meet at larger depths than the one in the report.
+template <class PositionOf>
+void ForceErrorMeasurement::press(const TissueView& tissue, int capacity, Presses Compared::*presses,
+                                  PositionOf position) {
+  const SphereTool sphere{source_.radius};
+  const ServoOptions options = rigid_press_options(capacity);
+  const std::vector<double> all_depths = depths();
+  HapticServo one(tissue, ToolList{sphere}, options, {}), two(tissue, ToolList{sphere, sphere}, options, {});
   for (Place& place : places_) {
     const Positions at = points(place, position);
-    for (std::size_t p = 0; p < at.size(); ++p) place.given[p] = press_point(servo, source_.radius, at[p], depths());
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      (place.single.*presses)[p] = press_points(one, source_.radius, {&at[p], 1}, all_depths);
+      if (!place.opposite[p]) continue;
+      const std::array<SurfacePoint, 2> sides{at[p], point_at(*place.opposite[p], position)};
+      (place.pinched.*presses)[p] =
+          press_points(two, source_.radius, sides, std::span(all_depths).first(summarised + 1));
+    }
   }
+}
+
+PALPATE_INLINE void ForceErrorMeasurement::press_given(const TissueView& tissue) {
+  press(tissue, 0, &Compared::given, [&](int v) -> Vector3 { return source_.origin + source_.surface.position(v); });
 }
 
 PALPATE_INLINE void ForceErrorMeasurement::press_reference(const SetupLimits& limits) {
@@ -167,17 +221,20 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   PointCloud cloud;
   Scene scene;
   std::optional<where::PointSet> touched;
-  std::vector<Positions> at;  // of the same points on the body without loads
-  const auto position = [&](int v) -> Vector3 {
+  const auto position = [&](int v) -> Vector3 {  // on the body without loads
     return source_.body.positions()[static_cast<std::size_t>(source_.nodes[static_cast<std::size_t>(v)])];
   };
+  const auto add = [&](const Vector3& point) {
+    cloud.points.push_back(point);
+    where::PointSet near = where::sphere(point, reach * source_.radius + 2.0 * edge_);
+    touched = touched ? *touched || near : near;
+  };
   for (const Place& place : places_) {
-    at.push_back(points(place, position));
-    thickness = std::min(thickness, thickness_under(at.back().front(), copy->mesh, boundary));
-    for (const SurfacePoint& point : at.back()) {
-      cloud.points.push_back(point.position);
-      where::PointSet near = where::sphere(point.position, reach * source_.radius + 2.0 * edge_);
-      touched = touched ? *touched || near : near;
+    const Positions at = points(place, position);
+    thickness = std::min(thickness, thickness_under(at.front(), copy->mesh, boundary));
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      add(at[p].position);
+      if (place.opposite[p]) add(point_at(*place.opposite[p], position).position);
     }
   }
   scene.touch(*touched);
@@ -200,10 +257,7 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   const std::span<const Matrix6> elasticities = source_.body.elasticities();
   ReferenceTissue tissue(std::move(fine), {elasticities.begin(), elasticities.end()}, scene,
                          {.progress = limits.progress, .memory_limit = limits.memory});
-  HapticServo servo(tissue, SphereTool{source_.radius}, rigid_press_options(capacity));
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    for (std::size_t p = 0; p < MissingDepth::positions; ++p)
-      places_[i].reference[p] = press_point(servo, source_.radius, at[i][p], depths());
+  press(TissueView(tissue), capacity, &Compared::reference, position);
   summarise();
 }
 
@@ -216,8 +270,8 @@ PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
 /// Missing depth at a place, position and depth, relative to the indentation; nothing where the sphere does not press.
 PALPATE_INLINE std::optional<double> ForceErrorMeasurement::relative_missing(const Place& place, std::size_t position,
                                                                              std::size_t depth) const {
-  const auto [force, indentation, local] = place.given[position][depth];
-  const double truth = place.reference[position][depth].force * (1.0 + own_error(depths()[depth]));
+  const auto [force, indentation, local] = place.single.given[position][depth];
+  const double truth = place.single.reference[position][depth].force * (1.0 + own_error(depths()[depth]));
   if (!(truth > 0.0) || !(force > 1e-3 * truth)) return std::nullopt;
   return force / truth - 1.0 + local / indentation;
 }
@@ -233,8 +287,8 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
   const std::vector<double> depth = depths();
   for (std::size_t p = 0; p < MissingDepth::positions; ++p)
     for (std::size_t i = 0; i < depth.size(); ++i) {
-      const auto [force, indentation, local] = place.given[p][i];
-      const double own = own_error(depth[i]), truth = place.reference[p][i].force * (1.0 + own);
+      const auto [force, indentation, local] = place.single.given[p][i];
+      const double own = own_error(depth[i]), truth = place.single.reference[p][i].force * (1.0 + own);
       const std::optional<double> relative = relative_missing(place, p, i);
       auto& levels = result.levels[p];
       if (!relative) {
@@ -251,26 +305,35 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
   return result;
 }
 
+/// Single spheres and pinches are not mixed: most places of a body can often not be pinched, and would hide the others.
 PALPATE_INLINE void ForceErrorMeasurement::summarise() {
-  constexpr std::size_t eighth = 2;
-  double squares = 0.0;
-  int compared = 0;
-  for (const Place& place : places_) {
-    report_.facet += place.length / static_cast<double>(places_.size());
-    for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
-      const double truth = place.reference[p][eighth].force * (1.0 + own_error(depths()[eighth]));
-      if (!(truth > 0.0)) continue;
-      const double error = place.given[p][eighth].force / truth - 1.0;
-      squares += error * error;
-      ++compared;
-      if (std::abs(error) > std::abs(report_.largest)) report_.largest = error;
+  const double own = own_error(depths()[summarised]);
+  for (const Compared Place::*kind : {&Place::single, &Place::pinched}) {
+    double squares = 0.0;
+    int compared = 0, places = 0;
+    for (const Place& place : places_) {
+      const int before = compared;
+      for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
+        const auto& [given, reference] = place.*kind;
+        if (reference[p].empty()) continue;
+        const double truth = reference[p][summarised].force * (1.0 + own);
+        if (!(truth > 0.0)) continue;
+        const double error = given[p][summarised].force / truth - 1.0;
+        squares += error * error;
+        ++compared;
+        if (std::abs(error) > std::abs(report_.largest)) report_.largest = error;
+      }
+      places += compared > before;
+    }
+    if (compared > 0) report_.typical = std::max(report_.typical, std::sqrt(squares / compared));
+    if (kind == &Place::pinched) {
+      report_.pinched = places;
+    } else if (compared == 0) {
+      report_.remark = "the sphere does not press the fine mesh at any of the places";
+      return;
     }
   }
-  if (compared == 0) {
-    report_.remark = "the sphere does not press the fine mesh at any of the places";
-    return;
-  }
-  report_.typical = std::sqrt(squares / compared);
+  for (const Place& place : places_) report_.facet += place.length / static_cast<double>(places_.size());
   report_.places = static_cast<int>(places_.size());
 }
 
@@ -284,7 +347,7 @@ PALPATE_INLINE std::vector<SurfacePoint> ForceErrorMeasurement::points() const {
 PALPATE_INLINE AccuracyReport ForceErrorMeasurement::compared(const TissueView& tissue) const {
   ForceErrorMeasurement other(*this);
   other.report_.typical = other.report_.largest = other.report_.facet = 0.0;
-  other.report_.places = 0;
+  other.report_.places = other.report_.pinched = 0;
   other.press_given(tissue);
   other.summarise();
   return other.report_;

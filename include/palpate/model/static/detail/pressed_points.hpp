@@ -22,10 +22,10 @@ struct PressedPoint {
 /// Options of a servo that follows its device exactly; `capacity` of contacts, 0: the default.
 ServoOptions rigid_press_options(int capacity);
 
-/// Presses the sphere of a servo, made with `rigid_press_options`, into a point, to increasing depths [m]; each depth
-/// is kept until the force settles. Some hundred ticks.
-std::vector<PressedPoint> press_point(HapticServo& servo, double radius, const SurfacePoint& point,
-                                      std::span<const double> depths);
+/// Presses the spheres of a servo, made with `rigid_press_options`, into one point each, all to the same increasing
+/// depths [m]; each depth is kept until the force settles. Some hundred ticks. Gives the force on the first sphere.
+std::vector<PressedPoint> press_points(HapticServo& servo, double radius, std::span<const SurfacePoint> points,
+                                       std::span<const double> depths);
 
 }}  // namespace palpate
 

@@ -14,17 +14,20 @@ PALPATE_INLINE ServoOptions rigid_press_options(int capacity) {
   return options;
 }
 
-PALPATE_INLINE std::vector<PressedPoint> press_point(HapticServo& servo, double radius, const SurfacePoint& point,
-                                                     std::span<const double> depths) {
+PALPATE_INLINE std::vector<PressedPoint> press_points(HapticServo& servo, double radius,
+                                                      std::span<const SurfacePoint> points,
+                                                      std::span<const double> depths) {
   constexpr int steps = 8, patience = 40;  // ticks to a depth, and most at it
   constexpr double settled = 1e-4;
   servo.reset();
-  ToolState state;
+  std::vector<ToolState> states(points.size());
   const auto force_at = [&](double depth) {
-    state.time += 1e-3;
-    state.position = point.position + (radius - depth) * point.outward;
-    servo.tick(state);
-    return servo.contact_force().dot(point.outward);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      states[i].time += 1e-3;
+      states[i].position = points[i].position + (radius - depth) * points[i].outward;
+    }
+    servo.tick(states);
+    return servo.contact_force().dot(points.front().outward);
   };
   std::vector<PressedPoint> pressed;
   double depth = -0.1 * radius;

@@ -10,10 +10,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE Statics::Statics(ElasticBody& body, const Scene& scene,
-                                const std::vector<NodeId>& kept_nodes, const MakeStiffness& make_stiffness,
-                                const SolverRecipe& recipe, const SetupLimits& limits, const std::string& cache_file,
-                                SetupReport& report)
+PALPATE_INLINE Statics::Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
+                                const MakeStiffness& make_stiffness, const SolverRecipe& recipe,
+                                const SetupLimits& limits, const std::string& cache_file, SetupReport& report)
     : body_(&body), conditions_(body_->conditions(scene)) {
   body_->require_constrained(conditions_);
   {

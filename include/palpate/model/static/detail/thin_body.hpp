@@ -6,9 +6,19 @@
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/static/detail/pressed_points.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Where the line through a point of the surface, in the direction in which it is pressed, leaves the body.
+struct LineExit {
+  double distance = 0.0;              ///< from the point [m]
+  Vector3 weights = Vector3::Zero();  ///< barycentric coordinates of the triangle
+};
+
+/// The exit through a triangle with outward normal (b - a) x (c - a); nothing if the line does not leave there.
+std::optional<LineExit> exit_through(const SurfacePoint& at, const Vector3& a, const Vector3& b, const Vector3& c);
 
 /// Distance from a point of the surface to the opposite side, along the direction in which it is pressed [m]; infinite
 /// where there is none. `boundary` is that of the mesh. O(faces).
