@@ -140,6 +140,17 @@ TEST_CASE("coarse facets are flagged in the report and in ticks, fine ones are n
   CHECK(press.error.bound < 0.1 * press.force);
 }
 
+TEST_CASE("a surface of few radii is measured at several places, which may differ", "[force_error]") {
+  const double radius = 24e-3, depth = radius / 8.0;  // the surface is 2.5 radii wide
+  auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
+  CHECK(model.report().accuracy.places == 3);
+  const double x = 0.0405, y = 0.0255;
+  const double truth = force_on_fine_mesh(radius, x, y, depth);
+  const BarredPress press = hold_over(model, radius, x, y, depth);
+  CAPTURE(truth, press.force, press.error.expected, press.error.bound);
+  CHECK(std::abs(press.force - truth) <= press.error.bound);
+}
+
 TEST_CASE("relative errors do not depend on the modulus", "[force_error]") {
   const Mesh<Tet4> given = block_with_cells(8);
   auto soft = barred_model<Tet4>(given, 8e-3), stiff = barred_model<Tet4>(given, 8e-3, 5e5);

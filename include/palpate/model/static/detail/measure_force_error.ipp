@@ -35,13 +35,16 @@ PALPATE_INLINE FacetScale ForceErrorMeasurement::scale_at(int vertex) const {
   return scale;
 }
 
-/// Vertices away from the rim by more than the contact is large; if there are none, the vertex farthest from it.
+/// Vertices away from the rim by more than a radius and a facet. On a surface that is too small for that many places:
+/// by more than the radius of the deepest contact, since one place does not show how places differ. On a smaller one
+/// the vertex farthest from the rim.
 PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
   const ContactSurface& surface = source_.surface;
+  const double contact = std::sqrt(source_.radius * depths().back());  // of Hertz
   std::vector<Vector3> rim;
   for (int v = 0; v < surface.vertex_count(); ++v)
     if (surface.is_rim_vertex(v)) rim.push_back(surface.position(v));
-  std::vector<int> inner;
+  std::vector<int> inner, nearer;
   int farthest = -1;
   double largest = 0.0;
   for (int v = 0; v < surface.vertex_count(); ++v) {
@@ -49,11 +52,13 @@ PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
     double square = infinity;
     for (const Vector3& p : rim) square = std::min(square, (p - surface.position(v)).squaredNorm());
     if (std::sqrt(square) > source_.radius + scale_at(v).length) inner.push_back(v);
+    if (std::sqrt(square) > contact) nearer.push_back(v);
     if (square > largest) {
       largest = square;
       farthest = v;
     }
   }
+  if (static_cast<int>(inner.size()) < source_.places && !nearer.empty()) inner = std::move(nearer);
   if (inner.empty() && farthest >= 0) inner.push_back(farthest);
   return inner;
 }
