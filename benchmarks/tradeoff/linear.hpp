@@ -114,7 +114,7 @@ class LinearContender : public Contender {
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
-  LinearContender(const Bench& bench, const std::function<Model()>& make, bool corrected)
+  LinearContender(const Bench& bench, const std::function<Model()>& make, bool corrected = false)
       : bench_(bench),
         model_(make()),
         tissue_(model_),
