@@ -12,6 +12,7 @@
 #include <palpate/testing/allocation_counter.hpp>
 
 #include "catch.hpp"
+#include "model/pinch.hpp"
 
 #include <array>
 #include <cmath>
@@ -256,24 +257,6 @@ BarredPress press_lobe(Model& model, double radius, double x, double depth) {
   return {servo.contact_force().z(), servo.force_error(), {}};
 }
 
-/// Force on the upper one of two spheres that pinch the lobe there, each pressed to a depth.
-template <class Model>
-double pinch_lobe(Model& model, double radius, double x, double depth) {
-  ServoOptions options;
-  options.coupling_stiffness = infinity;
-  options.contact.capacity = 400;
-  HapticServo servo(model, {SphereTool{radius}, SphereTool{radius}}, options);
-  std::array<ToolState, 2> states;
-  for (int i = 0; i <= 60; ++i) {
-    const double out = radius - depth * std::min(1.0, i / 20.0);
-    for (ToolState& state : states) state.time += 1e-3;
-    states[0].position = {x, 0.5 * bending_lobe.y(), bending_lobe.z() + out};
-    states[1].position = {x, 0.5 * bending_lobe.y(), -out};
-    servo.tick(states);
-  }
-  return servo.contact_force(0).z();
-}
-
 Scene two_sided_lobe(const TouchOptions& options) {
   return Scene().fix("x0").touch("z0").touch("z1", options);
 }
@@ -300,7 +283,8 @@ TEST_CASE("a part that is pinched is measured with two spheres, which do not ben
     scene.fix("x0").touch(where::sphere(above, 0.7 * radius) || where::sphere(below, 0.7 * radius));
     HapticFEModel<Tet10, LinearElastic> fine(
         promote<Tet10>(refine_near(given, PointCloud{{above, below}}, {radius / 5.0, 0.5})), scene, soft_material());
-    const double truth = pinch_lobe(fine, radius, x, depth), force = pinch_lobe(model, radius, x, depth);
+    const double truth = test::pinched_force(fine, radius, above, below, depth),
+                 force = test::pinched_force(model, radius, above, below, depth);
     CAPTURE(x, truth, force);
     CHECK(force > truth);
     squares += std::pow(force / truth - 1.0, 2);

@@ -6,12 +6,12 @@
 #include <palpate/mesh/refine_near_touched.hpp>
 #include <palpate/model/static/refine_to_accuracy.hpp>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "catch.hpp"
+#include "model/pinch.hpp"
 #include "refused.hpp"
 
 using namespace palpate;
@@ -90,19 +90,7 @@ TEST_CASE("a part that is pinched is refined until the error of a pinch is withi
   const Vector3 above(0.05, 0.02, 0.012), below(0.05, 0.02, 0.0);
   const Mesh<Tet4> mesh = box_tet4({0.07, 0.04, 0.012}, {14, 8, 3});
   const auto pinched_force = [&](auto& model) {
-    ServoOptions rigid;
-    rigid.coupling_stiffness = infinity;
-    rigid.contact.capacity = 400;
-    HapticServo servo(model, {SphereTool{accurate_radius}, SphereTool{accurate_radius}}, rigid);
-    std::array<ToolState, 2> states;
-    for (int k = 0; k <= 60; ++k) {
-      const double out = accurate_radius * (1.0 - 0.125 * std::min(1.0, k / 20.0));
-      for (ToolState& state : states) state.time = 1e-3 * k;
-      states[0].position = above + out * Vector3::UnitZ();
-      states[1].position = below - out * Vector3::UnitZ();
-      servo.tick(states);
-    }
-    return servo.contact_force(0).z();
+    return test::pinched_force(model, accurate_radius, above, below, accurate_radius / 8.0);
   };
   const auto refined = [&](bool pinched) {
     const Scene scene = Scene().fix("x0").touch(where::sphere(above, 0.014) || where::sphere(below, 0.014),
