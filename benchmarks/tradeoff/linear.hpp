@@ -7,20 +7,21 @@
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <optional>
+
 #include "contender.hpp"
 
 namespace tradeoff {
 
 /// A servo without virtual coupling: the spheres are at the device position, and the force is that of the tissue only;
-/// `corrected`: less its expected error.
+/// `corrected`: ServoOptions::corrected_force.
 template <TissueModel Tissue>
 class RenderedTissue {
  public:
-  RenderedTissue(Tissue& tissue, const PressScene& scene, bool corrected = false)
+  RenderedTissue(Tissue& tissue, const PressScene& scene, std::optional<bool> corrected = {})
       : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled(corrected)),
         states_(scene.spheres.size()),
-        forces_(scene.spheres.size()),
-        corrected_(corrected) {}
+        forces_(scene.spheres.size()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) noexcept {
     for (std::size_t b = 0; b < centres.size(); ++b) {
@@ -32,7 +33,7 @@ class RenderedTissue {
     for (std::size_t b = 0; b < forces_.size(); ++b) {
       forces_[b] = servo_.contact_force(b);
       const double size = forces_[b].norm();
-      if (corrected_ && size > 0.0) forces_[b] *= servo_.force_error(b).force / size;
+      if (size > 0.0) forces_[b] *= servo_.force_error(b).force / size;
     }
     return forces_;
   }
@@ -52,7 +53,7 @@ class RenderedTissue {
   }
 
  private:
-  static ServoOptions uncoupled(bool corrected) {
+  static ServoOptions uncoupled(std::optional<bool> corrected) {
     ServoOptions options;
     options.coupling_stiffness = infinity;
     options.corrected_force = corrected;
@@ -62,7 +63,6 @@ class RenderedTissue {
   HapticServo servo_;
   std::vector<ToolState> states_;
   std::vector<Vector3> forces_;
-  bool corrected_;
   Status status_;
   long count_ = 0;
 };
@@ -114,7 +114,7 @@ class LinearContender : public Contender {
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
-  LinearContender(const Bench& bench, const std::function<Model()>& make, bool corrected = false)
+  LinearContender(const Bench& bench, const std::function<Model()>& make, std::optional<bool> corrected = {})
       : bench_(bench),
         model_(make()),
         tissue_(model_),

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 using namespace palpate;
@@ -124,6 +125,38 @@ TEST_CASE("the corrected force is nearer to that on a fine mesh, within the boun
       corrected += std::pow(force.force()[2] / truth - 1.0, 2);
     }
   CHECK(corrected < 0.25 * given);
+}
+
+TEST_CASE("forces are corrected by default where a wanted accuracy was measured", "[force_error][corrected]") {
+  const double radius = 14e-3, x = 0.03, y = 0.03;
+  const auto block = promote<Tet10>(block_with_cells(8));
+  const auto ratio = [&](auto& model, std::optional<bool> corrected) {
+    ServoOptions options;
+    options.coupling_stiffness = infinity;
+    options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
+    options.contact.capacity = 200;
+    options.corrected_force = corrected;
+    HapticServo servo(model, SphereTool{radius}, options);
+    GatedForce force;
+    for (int i = 0; i <= 60; ++i)
+      force = servo.tick({.position = {x, y, force_error_block.z() + radius * (1.0 - std::min(1.0, i / 20.0) / 8.0)},
+                          .time = 1e-3 * i});
+    return force.force()[2] / servo.contact_force()[2];
+  };
+  auto options = SetupOptions{.force_error = measured_force_error(1)};
+  auto measured = barred_model(block, radius, 5e3, options);
+  options.force_error.wanted = 0.2;
+  auto wanted = barred_model(block, radius, 5e3, options);
+  REQUIRE(wanted.report().accuracy.typical < 0.1);
+  const double corrected = ratio(measured, true);
+  CHECK(std::abs(corrected - 1.0) > 0.005);
+  CHECK(ratio(measured, std::nullopt) == 1.0);
+  CHECK(ratio(wanted, std::nullopt) == Approx(corrected).epsilon(1e-12));
+  CHECK(ratio(wanted, false) == 1.0);
+
+  auto coarse = barred_model(block_with_cells(8), radius, 5e3, options);
+  REQUIRE(coarse.report().accuracy.typical > 0.1);
+  CHECK(ratio(coarse, std::nullopt) == 1.0);
 }
 
 TEST_CASE("coarse facets are flagged in the report and in ticks, fine ones are not", "[force_error]") {

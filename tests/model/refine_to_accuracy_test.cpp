@@ -55,6 +55,46 @@ double force_on_block(Model& model) {
   return servo.contact_force().z();
 }
 
+/// Energy that the rendered force gives on a closed path, relative to that of the press: in over a point of the top,
+/// along the top by `step`, out, and back.
+template <class Model>
+double energy_gained(Model& model, const Vector3& start, const Vector3& step) {
+  constexpr int ticks = 60;
+  constexpr double depth = 0.2 * accurate_radius, above = -0.05 * accurate_radius;
+  ServoOptions rigid;
+  rigid.coupling_stiffness = infinity;
+  rigid.contact.capacity = 256;
+  rigid.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
+  HapticServo servo(model, SphereTool{.radius = accurate_radius}, rigid);
+  ToolState state;
+  Vector3 position = start + (accurate_radius - above) * Vector3::UnitZ(), force = Vector3::Zero();
+  double work = 0.0;
+  const auto go = [&](const Vector3& along, double out) {
+    const Vector3 from = position;
+    for (int i = 1; i <= ticks; ++i) {
+      const Vector3 to = from + (start + along + out * Vector3::UnitZ() - from) * i / ticks;
+      Vector3 pushed;
+      for (int settle = 0; settle < 3; ++settle) {
+        state.time += 1e-3;
+        state.position = to;
+        pushed = servo.tick(state).force();
+      }
+      work += 0.5 * (force + pushed).dot(to - position);
+      position = to;
+      force = pushed;
+    }
+  };
+  const Vector3 none = Vector3::Zero();
+  go(none, accurate_radius - above);
+  go(none, accurate_radius - depth);
+  const double pressed = -work;
+  go(step, accurate_radius - depth);
+  go(step, accurate_radius - above);
+  go(none, accurate_radius - above);
+  REQUIRE(pressed > 0.0);
+  return work / pressed;
+}
+
 }  // namespace
 
 TEST_CASE("a mesh is refined until the force error is within the goal", "[model][refine_to_accuracy]") {
@@ -83,6 +123,22 @@ TEST_CASE("a mesh is refined until the force error is within the goal", "[model]
   text << refined.search;
   CHECK(text.str().find("force error wanted: 8 %") != std::string::npos);
   CHECK(text.str().find("not reached") == std::string::npos);
+}
+
+TEST_CASE("corrected forces on a fine mesh give almost no energy on closed paths",
+          "[model][refine_to_accuracy][corrected]") {
+  const Mesh<Tet4> mesh = coarse_block();
+  auto refined =
+      refine_to_accuracy<AccurateBlock>(mesh, pressed_block(mesh), accurate_material, {.error = 0.08, .places = 1});
+  REQUIRE(refined.model.contact_surface().corrects_forces());
+  double largest = 0.0;
+  for (const double angle : {0.3, 1.4, 2.5, 3.6, 4.7, 5.8}) {
+    const Vector3 aside(std::cos(angle), std::sin(angle), 0.0);
+    const Vector3 start = accurate_centre + 0.1 * accurate_radius * Vector3(aside.y(), -aside.x(), 0.0);
+    largest = std::max(largest, std::abs(energy_gained(refined.model, start, 0.3 * accurate_radius * aside)));
+  }
+  CHECK(largest < 0.01);
+  CHECK(largest > 1e-6);  // they are corrected: without correction less
 }
 
 TEST_CASE("a part that is pinched is refined until the error of a pinch is within the goal",

@@ -70,11 +70,11 @@ class HapticServo {
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
   /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
   Vector3 proxy(std::size_t tool = 0) const noexcept;
-  /// Contact force, or cutting force of a blade, before the gate and without ServoOptions::corrected_force, world frame
-  /// [N]. For the tick's own thread.
+  /// Contact force, or cutting force of a blade, before the gate and without correction
+  /// (ServoOptions::corrected_force), world frame [N]. For the tick's own thread.
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
   /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
-  /// of contacts left out; of the corrected force, if ServoOptions::corrected_force. Its bound is infinite where
+  /// of contacts left out; of the corrected force, where it is corrected. Its bound is infinite where
   /// nothing was measured. For the tick's own thread.
   ForceError force_error(std::size_t tool = 0) const noexcept { return errors_[tool]; }
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the

@@ -63,7 +63,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       forces_(tools.size()),
       errors_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
-      corrected_force_(options.corrected_force),
+      corrected_force_(options.corrected_force.value_or(tissue_.contact_surface().corrects_forces())),
       lost_contact_(tools.size(), false) {
   if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",

@@ -83,14 +83,16 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   const StageTimer timer(setup_report(), "accuracy");
   limits().advance("accuracy", 0.0);
   const double radius = scene().touch_radius();
+  std::shared_ptr<const ForceAccuracy> measured;
   if (radius > 0.0)
-    surface_.set_force_accuracy(
+    measured =
         options.measure({elastic_body(), statics_->conditions(), touchable_nodes(), surface_, to_world().translation(),
                          radius, scene().is_pinched(), options.places, node_map(), options.coarse},
-                        TissueView(*this), limits(), setup_report()));
+                        TissueView(*this), limits(), setup_report());
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
   setup_report().require_accuracy(options.wanted);
+  surface_.set_force_accuracy(std::move(measured), setup_report().accuracy.corrects_forces());
 }
 
 /// A solve loses the digits of the condition number, if that is known, and what the probe solve lost. The columns have

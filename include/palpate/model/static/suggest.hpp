@@ -53,8 +53,8 @@ struct Suggestion {
   std::string code() const;
 };
 
-/// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> on meshes refined near the
-/// touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
+/// Which of Tet4, Smoothed<Tet4> and Tet10 on the mesh as given, and Smoothed<Tet4> and Tet10 on meshes refined near
+/// the touchable part, presses most accurately within the budget on this machine. Each is set up, pressed at the same
 /// points as one tissue on a fine mesh (detail/measure_force_error.hpp), and its ticks are timed; one whose set-up is
 /// predicted to exceed the budget by far is left out. Their largest errors are compared: the error of coarse facets
 /// depends on where they are pressed, and typical ones of a few points rank them too high. If an error is wanted, the

@@ -89,9 +89,8 @@ PALPATE_INLINE std::string SuggestedModel::name() const {
 PALPATE_INLINE std::string Suggestion::code() const {
   if (!chosen) return "// " + reason + "\n";
   const SuggestedModel& m = candidates[*chosen];
-  const std::string mesh = m.edge > 0.0           ? "refine_near_touched(mesh, scene, " + number(m.edge) + ")"
-                           : m.element == "Tet10" ? "promote<Tet10>(mesh)"
-                                                  : "mesh";
+  std::string mesh = m.edge > 0.0 ? "refine_near_touched(mesh, scene, " + number(m.edge) + ")" : "mesh";
+  if (m.element == "Tet10") mesh = "promote<Tet10>(" + mesh + ")";
   return "// " + reason + "\nusing Model = HapticFEModel<" + m.element +
          ", LinearElastic, Condensed<SelectiveInverse>>;\n" +
          (lists_nodes && (m.edge > 0.0 || m.element == "Tet10") ? "scene = name_listed_nodes(mesh, scene);\n" : "") +

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,10 +33,12 @@ class CandidateMaker {
   const std::string& reference_remark() const noexcept { return reference_remark_; }
   /// Processor time of this thread since the construction [s].
   double seconds() const noexcept;
+  /// Of the time for the suggestion; negative when it is over [s].
+  double seconds_left() const noexcept;
 
  private:
   struct Base;
-  /// Set-up times of a candidate on the mesh as given, for predictions.
+  /// Set-up times of an element on the finest mesh so far, for predictions.
   struct Cost {
     double nodes = 0.0, touched = 0.0;        // counts
     double of_nodes = 0.0, of_touched = 0.0;  // of its stages [s]
@@ -52,6 +55,8 @@ class CandidateMaker {
   void attempt(SuggestedModel& model, Work work);
   template <class E>
   Pending pending(const char* element, double edge);
+  /// Candidates on refined meshes, in the order in which they are tried.
+  std::vector<Pending> refined();
   template <class E>
   void measure(SuggestedModel& model, const Mesh<E>& mesh);
   template <class Tissue>
@@ -60,7 +65,9 @@ class CandidateMaker {
   void finish(Pending& pending);
   /// Time of its set-up [s].
   double predicted(const Pending& pending) const;
-  std::vector<double> edges() const;
+  Cost& cost_of(const std::string& element) noexcept;
+  /// The radius divided by each of these, where that is shorter than the facets as given [m].
+  std::vector<double> edges(std::initializer_list<double> parts) const;
   /// Cancels what runs longer than this [s], and what runs when the time is over.
   ProgressCallback within(double seconds) const;
 
@@ -70,7 +77,8 @@ class CandidateMaker {
   SuggestBudget budget_;
   std::int64_t start_;
   std::unique_ptr<Base> base_;
-  Cost tet4_, smoothed_;
+  Cost tet4_, smoothed_, tet10_;
+  double too_many_touched_ = infinity;  // touchable nodes with which a tick took clearly longer than the budget
   std::string reference_remark_;
 };
 

@@ -124,9 +124,14 @@ PALPATE_INLINE double CandidateMaker::seconds() const noexcept {
   return 1e-9 * static_cast<double>(platform::compute_ns() - start_);
 }
 
+PALPATE_INLINE double CandidateMaker::seconds_left() const noexcept {
+  constexpr double used = 0.97;  // of the budget: a set-up ends some time after it is cancelled
+  return used * budget_.seconds - seconds();
+}
+
 PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
 #if defined(PALPATE_HAS_EXCEPTIONS)
-  const double end = std::min(seconds() + most, budget_.seconds);
+  const double end = seconds() + std::min(most, seconds_left());
   return [this, end](const Progress&) { return seconds() < end; };
 #else
   (void)most;
@@ -136,11 +141,13 @@ PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
 
 template <class Tissue>
 void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
+  constexpr double clearly = 1.2;
   const SetupReport& report = tissue.report();
   model.nodes = report.nodes;
   model.kept_dofs = report.kept_dofs;
   model.bytes = report.stiffness_bytes + report.solver_bytes + report.compliance_bytes;
-  if (Cost& cost = model.element == "Tet4" ? tet4_ : smoothed_; cost.nodes == 0.0) {  // Smoothed<Tet4> is before Tet10
+  if (Cost& cost = cost_of(model.element); cost.nodes < static_cast<double>(model.nodes)) {
+    cost = {};
     cost.nodes = static_cast<double>(model.nodes);
     cost.touched = static_cast<double>(tissue.touchable_nodes().size());
     const double busy = std::min(1.0, model.setup / report.total_seconds());  // processor time per time of the stages
@@ -150,6 +157,8 @@ void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
   const TissueView view(tissue);
   HapticServo servo(tissue, SphereTool{scene_.touch_radius()}, rigid_press_options(0));
   model.tick = pressing_tick_seconds(servo, scene_.touch_radius(), base_->errors.points());
+  if (model.tick > clearly * budget_.tick_seconds)
+    too_many_touched_ = std::min(too_many_touched_, static_cast<double>(tissue.touchable_nodes().size()));
   if (!reference_remark_.empty()) {
     model.remark = reference_remark_;
     return;
@@ -193,11 +202,14 @@ void CandidateMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
   enter(model, tissue);
 }
 
+PALPATE_INLINE CandidateMaker::Cost& CandidateMaker::cost_of(const std::string& element) noexcept {
+  return element == "Tet4" ? tet4_ : element == "Tet10" ? tet10_ : smoothed_;
+}
+
 /// Elimination in three dimensions grows with the square of the nodes; storing the compliance of the touchable ones
-/// with the square of their number, eliminating it with the cube: between them. Tet10 is as sparse as Tet4,
-/// Smoothed<Tet4> is not.
+/// with the square of their number, eliminating it with the cube: between them. Tet10 is about as sparse as Tet4.
 PALPATE_INLINE double CandidateMaker::predicted(const Pending& p) const {
-  const Cost& known = p.model.element == "Tet10" ? tet4_ : smoothed_;
+  const Cost& known = p.model.element != "Tet10" ? smoothed_ : tet10_.nodes > 0.0 ? tet10_ : tet4_;
   if (!(known.nodes > 0.0)) return p.model.setup;
   return p.model.setup + known.of_nodes * std::pow(p.nodes / known.nodes, 2.0) +
          known.of_touched * std::pow(p.touched / known.touched, 2.5);
@@ -212,7 +224,7 @@ void CandidateMaker::attempt(SuggestedModel& model, Work work) {
   } catch (const SetupError& error) {
     model.setup = seconds() - before;
     model.remark = error.kind() != SetupErrorKind::cancelled ? error.what()
-                   : seconds() < budget_.seconds             ? "its set-up takes longer than the budget"
+                   : seconds_left() > 0.0                    ? "its set-up takes longer than the budget"
                                                              : "the time for the suggestion is over";
   }
 #else
@@ -252,7 +264,11 @@ CandidateMaker::Pending CandidateMaker::pending(const char* element, double edge
 PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
   constexpr double sure = 1.5;  // of the prediction
   if (!p.measure) return;
-  const double left = budget_.seconds - seconds(), expected = predicted(p);
+  if (p.touched >= too_many_touched_) {
+    p.model.remark = "not tried: a tick takes longer than the budget with fewer touchable nodes";
+    return;
+  }
+  const double left = seconds_left(), expected = predicted(p);
   if (left <= 0.0) {
     p.model.remark = "not tried: the time for the suggestion is over";
   } else if (expected > sure * std::min(left, budget_.setup_seconds)) {
@@ -263,31 +279,37 @@ PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
   }
 }
 
-/// Fractions of the radius that are shorter than the edges of the facets as given.
-PALPATE_INLINE std::vector<double> CandidateMaker::edges() const {
+PALPATE_INLINE std::vector<double> CandidateMaker::edges(std::initializer_list<double> parts) const {
   std::vector<double> edges;
-  for (const double parts : {2.0, 3.0, 4.0, 5.0})
-    if (const double edge = scene_.touch_radius() / parts; edge < base_->errors.report().facet) edges.push_back(edge);
+  for (const double part : parts)
+    if (const double edge = scene_.touch_radius() / part; edge < base_->errors.report().facet) edges.push_back(edge);
   return edges;
 }
 
-/// The mesh as given first: finer facets make more contacts and longer ticks. Then those that are set up soonest.
+/// Those that are set up soonest first. Tet10 is more accurate than Smoothed<Tet4> after a set-up as long, and with as
+/// many touchable nodes: it is tried before those that are set up in more than half of its time.
+PALPATE_INLINE std::vector<CandidateMaker::Pending> CandidateMaker::refined() {
+  std::vector<Pending> all;
+  for (const double edge : edges({2.0, 3.0, 4.0, 5.0})) all.push_back(pending<Tet4>("Smoothed<Tet4>", edge));
+  for (const double edge : edges({1.0, 2.0, 3.0})) all.push_back(pending<Tet10>("Tet10", edge));
+  std::ranges::sort(all, {},
+                    [this](const Pending& p) { return predicted(p) * (p.model.element == "Tet10" ? 0.5 : 1.0); });
+  return all;
+}
+
+/// The mesh as given first: finer facets make more contacts and longer ticks.
 PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
   std::vector<SuggestedModel> models(1);
   models.front().element = "Tet4";
   make_base(models.front());
   if (!reference_remark_.empty()) return models;
-  Pending smoothed = pending<Tet4>("Smoothed<Tet4>", 0.0);
-  finish(smoothed);
-  models.push_back(std::move(smoothed.model));
-  std::vector<Pending> others;
-  for (const double edge : edges()) others.push_back(pending<Tet4>("Smoothed<Tet4>", edge));
-  std::ranges::sort(others, {}, [this](const Pending& p) { return predicted(p); });
-  others.insert(others.begin(), pending<Tet10>("Tet10", 0.0));
-  for (Pending& p : others) {
+  const auto finished = [&](Pending p) {
     finish(p);
     models.push_back(std::move(p.model));
-  }
+  };
+  finished(pending<Tet4>("Smoothed<Tet4>", 0.0));
+  finished(pending<Tet10>("Tet10", 0.0));
+  for (Pending& p : refined()) finished(std::move(p));
   return models;
 }
 
