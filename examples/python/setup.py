@@ -40,7 +40,9 @@ class BuildWithLibrary(build_ext):
         subprocess.run(["cmake", "-S", SOURCE, "-B", folder, "-DCMAKE_BUILD_TYPE=Release", "-DPALPATE_BUILD_C=ON",
                         "-DPALPATE_BUILD_TESTS=OFF", "-DPALPATE_BUILD_EXAMPLES=OFF", "-DPALPATE_BUILD_BENCHMARKS=OFF"],
                        check=True)
-        subprocess.run(["cmake", "--build", folder, "--target", "palpate_c", "--parallel"], check=True)
+        # Without a number, make would start all compilers at once: a gigabyte each.
+        jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count() or 1)
+        subprocess.run(["cmake", "--build", folder, "--target", "palpate_c", "--parallel", jobs], check=True)
         return folder
 
 

@@ -98,6 +98,8 @@ class Setup(unittest.TestCase):
             if stage == "factorisation":
                 os.kill(os.getpid(), signal.SIGINT)
 
+        # A shell starts background jobs with this signal ignored, and Python then installs no handler.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         with self.assertRaises(KeyboardInterrupt):
             organ(progress=interrupt)
 

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <random>
 
 using namespace palpate;
@@ -145,6 +146,16 @@ TEST_CASE("VTU: a file of write_vtu reads back", "[xml]") {
   std::filesystem::remove(path);
   CHECK(back.positions == mesh.positions);
   CHECK(back.elements == mesh.elements);
+}
+
+TEST_CASE("XML files are detected from their content, whatever their name ends with", "[xml]") {
+  for (const auto& [name, text] : {std::pair{"palpate_xml_of_no_kind", xml_test::febio4},
+                                   std::pair{"palpate_xml.msh", xml_test::samples().at("vtu base64")}}) {
+    const std::string path = (std::filesystem::temp_directory_path() / name).string();
+    std::ofstream(path, std::ios::binary) << text;
+    CHECK(io::xml::read_mesh<Tet4>(path).node_count() == 5);
+    std::filesystem::remove(path);
+  }
 }
 
 TEST_CASE("FEBio: parts are regions, sets and surfaces are groups", "[xml]") {

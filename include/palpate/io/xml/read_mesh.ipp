@@ -23,10 +23,10 @@ inline FileMesh parse_file(std::string_view text, const std::string& name) {
 }
 
 inline FileMesh read_file_mesh(const std::string& path) {
-  const std::string_view ending = ending_of(path);
-  const bool is_xml_file =
-      vtk::same_word(ending, ".vtu") || vtk::same_word(ending, ".feb") || vtk::same_word(ending, ".xml");
-  return is_xml_file ? xml::parse_file(read_file(path), path) : io::read_file_mesh(path);
+  if (format_of("", path) == MeshFormat::tetgen) return io::read_file_mesh(path);
+  const std::string text = read_file(path);
+  if (is_xml(text)) return xml::parse_file(text, path);
+  return format_of(text, path) == MeshFormat::veg ? io::read_file_mesh(path) : io::parse_file(text, path);
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::xml
