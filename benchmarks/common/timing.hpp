@@ -92,6 +92,28 @@ inline double process_bytes(const char* key) {
   return unknown;
 }
 
+/// While it exists, freed memory stays in the process (glibc): on virtual machines the system may take as long to
+/// provide the pages of a factor as the factorisation.
+class KeepFreedMemory {
+ public:
+#if defined(__GLIBC__)
+  KeepFreedMemory() {
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  }
+  ~KeepFreedMemory() {
+    constexpr int default_maps = 65536, default_trim = 128 * 1024;
+    mallopt(M_MMAP_MAX, default_maps);
+    mallopt(M_TRIM_THRESHOLD, default_trim);
+    malloc_trim(0);
+  }
+#else
+  KeepFreedMemory() = default;
+#endif
+  KeepFreedMemory(const KeepFreedMemory&) = delete;
+  KeepFreedMemory& operator=(const KeepFreedMemory&) = delete;
+};
+
 /// Largest growth of the resident memory during work() [bytes]; NaN where the system does not report it.
 template <class Work>
 double peak_growth(Work&& work) {

@@ -11,6 +11,7 @@
 #if defined(__ELF__)  // functions of the libraries that CHOLMOD links; null when they do not exist
 extern "C" {
 void openblas_set_num_threads(int) __attribute__((weak));
+char* openblas_get_corename() __attribute__((weak));
 void omp_set_max_active_levels(int) __attribute__((weak));
 }
 #endif
@@ -26,17 +27,15 @@ struct Cholmod::Implementation {
 
 namespace {
 
-/// Limits BLAS and OpenMP. Returns the name of the BLAS.
-const char* use_threads(int count) noexcept {
+/// Limits BLAS and OpenMP.
+void use_threads(int count) noexcept {
 #if defined(__ELF__)
   // CHOLMOD requests four threads regardless of the configured number; only zero active levels prevent that.
   if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(count > 1 ? 1 : 0);
-  if (openblas_set_num_threads != nullptr) {
-    openblas_set_num_threads(count);
-    return count > 1 ? "OpenBLAS" : "OpenBLAS, one thread";
-  }
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
+#else
+  (void)count;
 #endif
-  return "the system's BLAS";
 }
 
 }  // namespace
@@ -44,8 +43,11 @@ const char* use_threads(int count) noexcept {
 bool Cholmod::available() noexcept {
   return true;
 }
-const char* Cholmod::blas() noexcept {
-  return use_threads(1);
+std::string Cholmod::blas() {
+#if defined(__ELF__)
+  if (openblas_get_corename != nullptr) return std::string("OpenBLAS, kernels for ") + openblas_get_corename();
+#endif
+  return "the system's BLAS";
 }
 void Cholmod::set_threads(int count) noexcept {
   use_threads(count);
@@ -113,7 +115,7 @@ struct Cholmod::Implementation {};
 bool Cholmod::available() noexcept {
   return false;
 }
-const char* Cholmod::blas() noexcept {
+std::string Cholmod::blas() {
   return "";
 }
 void Cholmod::set_threads(int) noexcept {}

@@ -4,6 +4,7 @@
 #include <palpate/assembly/detail/free_stiffness.hpp>
 
 #include <memory>
+#include <string>
 
 namespace bench {
 
@@ -11,8 +12,9 @@ namespace bench {
 class Cholmod {
  public:
   static bool available() noexcept;
-  /// Name of the BLAS used for its dense operations.
-  static const char* blas() noexcept;
+  /// The BLAS of its dense operations. An OpenBLAS older than the processor may use the kernels of an old one: the
+  /// environment variable OPENBLAS_CORETYPE chooses others.
+  static std::string blas();
   /// For BLAS and OpenMP, from now on.
   static void set_threads(int count) noexcept;
 
