@@ -50,12 +50,12 @@ int main(int argc, char** argv) try {
   setup::measure_assembly(session);
   setup::measure_factorisation(session);
   setup::measure_irregular(session, organ.c_str());
-  setup::measure_threads(session);
   setup::measure_solves(session);
   setup::measure_condensation(session);
   setup::measure_memory(session);
   setup::measure_iterative(session);
   setup::measure_models(session, organ.c_str());
+  setup::measure_threads(session);
   return rows.failed() ? 1 : 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "bench_setup: %s\n", e.what());
