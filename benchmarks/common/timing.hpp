@@ -114,10 +114,14 @@ class KeepFreedMemory {
   KeepFreedMemory& operator=(const KeepFreedMemory&) = delete;
 };
 
-/// Largest growth of the resident memory during work() [bytes]; NaN where the system does not report it.
+/// Largest growth of the resident memory during work() [bytes]; NaN where the system does not report it. Large blocks
+/// are returned to the system when they are freed (glibc): what the allocator would keep is not counted.
 template <class Work>
 double peak_growth(Work&& work) {
 #if defined(__GLIBC__)
+  constexpr int large = 128 * 1024;
+  mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_TRIM_THRESHOLD, large);
   malloc_trim(0);
 #endif
   std::ofstream("/proc/self/clear_refs") << "5";  // resets the recorded peak
