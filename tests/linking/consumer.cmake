@@ -3,13 +3,7 @@
 # SOURCE (of palpate), PREFIX (where it is installed) and EIGEN_DIR.
 cmake_minimum_required(VERSION 3.21)
 
-function(step what)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  message("${text}")
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${what}: ${result}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/step.cmake)
 
 if(METHOD STREQUAL "find_package")
   set(method_arguments -DCMAKE_PREFIX_PATH=${PREFIX})

@@ -3,13 +3,7 @@
 # installed) and EIGEN_DIR.
 cmake_minimum_required(VERSION 3.21)
 
-function(step what)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  message("${text}")
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${what}: ${result}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/step.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 step("it does not configure" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/xml_meshes -B ${WORK} -G ${GENERATOR}

@@ -39,23 +39,35 @@ struct BarredPress {
   Status status;
 };
 
-/// A sphere pressed to a depth over a point of the top.
+/// A servo for the tool of a rigid press, whose gate passes the whole force.
 template <class Model>
-BarredPress hold_over(Model& model, double radius, double x, double y, double depth) {
+HapticServo rigid_servo(Model& model, double radius, std::optional<bool> corrected = {}) {
   ServoOptions options;
   options.coupling_stiffness = infinity;
+  options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
   options.contact.capacity = 200;
-  HapticServo servo(model, SphereTool{radius}, options);
+  options.corrected_force = corrected;
+  return {model, SphereTool{radius}, options};
+}
+
+/// The last tick of a sphere that is pressed to a depth over a point of the top.
+GatedForce pressed_over(HapticServo& servo, double radius, double x, double y, double depth) {
+  servo.reset();
   ToolState state;
-  BarredPress press;
+  GatedForce force;
   for (int i = 0; i <= 60; ++i) {
     state.time += 1e-3;
     state.position = {x, y, force_error_block.z() + radius - depth * std::min(1.0, i / 20.0)};
-    press.status = servo.tick(state).status;
+    force = servo.tick(state);
   }
-  press.force = servo.contact_force().z();
-  press.error = servo.force_error();
-  return press;
+  return force;
+}
+
+template <class Model>
+BarredPress hold_over(Model& model, double radius, double x, double y, double depth) {
+  HapticServo servo = rigid_servo(model, radius);
+  const Status status = pressed_over(servo, radius, x, y, depth).status;
+  return {servo.contact_force().z(), servo.force_error(), status};
 }
 
 template <class E>
@@ -99,23 +111,11 @@ TEST_CASE("the error bar contains the force on a fine mesh, and the expected err
 TEST_CASE("the corrected force is nearer to that on a fine mesh, within the bound", "[force_error][corrected]") {
   const double radius = 6e-3;
   auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
-  ServoOptions options;
-  options.coupling_stiffness = infinity;
-  options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
-  options.contact.capacity = 200;
-  options.corrected_force = true;
-  HapticServo servo(model, SphereTool{radius}, options);
+  HapticServo servo = rigid_servo(model, radius, true);
   double given = 0.0, corrected = 0.0;
   for (const auto& [x, y] : {std::pair{0.03, 0.03}, std::pair{0.0271, 0.0334}})
     for (const double depth : {radius / 8.0, radius / 4.0}) {
-      servo.reset();
-      ToolState state;
-      GatedForce force;
-      for (int i = 0; i <= 60; ++i) {
-        state.time += 1e-3;
-        state.position = {x, y, force_error_block.z() + radius - depth * std::min(1.0, i / 20.0)};
-        force = servo.tick(state);
-      }
+      const GatedForce force = pressed_over(servo, radius, x, y, depth);
       const double truth = force_on_fine_mesh(radius, x, y, depth);
       CAPTURE(x, y, depth, truth, force.force()[2], servo.contact_force()[2]);
       CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
@@ -128,20 +128,11 @@ TEST_CASE("the corrected force is nearer to that on a fine mesh, within the boun
 }
 
 TEST_CASE("forces are corrected by default where a wanted accuracy was measured", "[force_error][corrected]") {
-  const double radius = 14e-3, x = 0.03, y = 0.03;
+  const double radius = 14e-3;
   const auto block = promote<Tet10>(block_with_cells(8));
   const auto ratio = [&](auto& model, std::optional<bool> corrected) {
-    ServoOptions options;
-    options.coupling_stiffness = infinity;
-    options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
-    options.contact.capacity = 200;
-    options.corrected_force = corrected;
-    HapticServo servo(model, SphereTool{radius}, options);
-    GatedForce force;
-    for (int i = 0; i <= 60; ++i)
-      force = servo.tick({.position = {x, y, force_error_block.z() + radius * (1.0 - std::min(1.0, i / 20.0) / 8.0)},
-                          .time = 1e-3 * i});
-    return force.force()[2] / servo.contact_force()[2];
+    HapticServo servo = rigid_servo(model, radius, corrected);
+    return pressed_over(servo, radius, 0.03, 0.03, radius / 8.0).force()[2] / servo.contact_force()[2];
   };
   auto options = SetupOptions{.force_error = measured_force_error(1)};
   auto measured = barred_model(block, radius, 5e3, options);

@@ -61,7 +61,7 @@ class ContactSurface {
     return static_cast<std::size_t>(t) < materials_.size() ? materials_[static_cast<std::size_t>(t)]
                                                            : ContactMaterial{};
   }
-  /// Sets the errors that were measured on this surface; null: none were.
+  /// Sets the errors that were measured on this surface, null: none were; and whether servos correct forces by them.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy, bool corrects_forces) noexcept {
     accuracy_ = std::move(accuracy);
     corrects_forces_ = corrects_forces;

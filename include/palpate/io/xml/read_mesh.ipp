@@ -3,6 +3,8 @@
 
 #include <palpate/io/xml/read_mesh.hpp>
 
+#include <fstream>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
 inline bool is_xml(std::string_view text) noexcept {
@@ -23,10 +25,12 @@ inline FileMesh parse_file(std::string_view text, const std::string& name) {
 }
 
 inline FileMesh read_file_mesh(const std::string& path) {
-  if (format_of("", path) == MeshFormat::tetgen) return io::read_file_mesh(path);
-  const std::string text = read_file(path);
-  if (is_xml(text)) return xml::parse_file(text, path);
-  return format_of(text, path) == MeshFormat::veg ? io::read_file_mesh(path) : io::parse_file(text, path);
+  constexpr std::size_t enough = 4096;  // to reach the first tag
+  std::string head(enough, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(enough));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return is_xml(head) ? xml::parse_file(read_file(path), path) : io::read_file_mesh(path);
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::xml

@@ -1,8 +1,13 @@
 // Sets up and measures the compositions among which `suggest` chooses.
 #pragma once
 
+#include <palpate/assembly/detail/region_materials.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/material/linear_elastic.hpp>
+#include <palpate/mesh/mesh.hpp>
+#include <palpate/mesh/scene.hpp>
 #include <palpate/model/static/detail/measure_force_error.hpp>
-#include <palpate/model/static/suggest.hpp>
+#include <palpate/model/static/detail/suggested_model.hpp>
 
 #include <cstdint>
 #include <functional>

@@ -7,6 +7,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/mesh/promote.hpp>
+#include <palpate/mesh/refine_near_touched.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
@@ -265,7 +266,7 @@ PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
   constexpr double sure = 1.5;  // of the prediction
   if (!p.measure) return;
   if (p.touched >= too_many_touched_) {
-    p.model.remark = "not tried: a tick takes longer than the budget with fewer touchable nodes";
+    p.model.remark = "not tried: a tick takes longer than the budget even with fewer touchable nodes";
     return;
   }
   const double left = seconds_left(), expected = predicted(p);
