@@ -1,5 +1,8 @@
 // Accuracy of a solver for the softest motion.
 #include <palpate/linear/condition.hpp>
+#include <palpate/testing/random.hpp>
+
+#include <algorithm>
 
 #include "catch.hpp"
 
@@ -30,7 +33,47 @@ struct SoftSolver {
   }
 };
 
+/// The inverse of a symmetric matrix; counts the solves.
+struct CountedSolver {
+  MatrixX inverse;
+  int solves = 0;
+  Index size() const noexcept { return inverse.rows(); }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
+    ++solves;
+    x = inverse * b;
+    return {};
+  }
+};
+
+double largest_column_sum(const MatrixX& m) {
+  return m.cwiseAbs().colwise().sum().maxCoeff();
+}
+
 }  // namespace
+
+TEST_CASE("the norm of an inverse is estimated from few solves", "[linear][condition]") {
+  CountedSolver diagonal{VectorX::LinSpaced(50, 1.0, 50.0).asDiagonal()};
+  CHECK_THAT(inverse_norm_estimate(diagonal), WithinRel(50.0, 1e-14));
+  CHECK(diagonal.solves == 3);  // the signs do not change
+  MatrixX bar(40, 40);          // compliance of a bar in tension, fixed at one end
+  for (Index i = 0; i < 40; ++i)
+    for (Index j = 0; j < 40; ++j) bar(i, j) = static_cast<double>(std::min(i, j) + 1);
+  CountedSolver solver{bar};
+  CHECK_THAT(inverse_norm_estimate(solver), WithinRel(largest_column_sum(bar), 1e-14));
+  CHECK(solver.solves == 3);
+  testing::Random random(7);
+  int most = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    MatrixX factor(30, 30);
+    for (Index i = 0; i < factor.size(); ++i) factor.data()[i] = random.uniform(-1.0, 1.0);
+    CountedSolver spd{factor * factor.transpose()};
+    const double exact = largest_column_sum(spd.inverse), estimate = inverse_norm_estimate(spd);
+    CHECK(estimate <= exact * (1.0 + 1e-12));
+    CHECK(3.0 * estimate > exact);
+    most = std::max(most, spd.solves);
+  }
+  CHECK(most <= 8);
+}
 
 TEST_CASE("the probe shows the full loss of a single motion, and its place", "[linear][condition]") {
   const SoftDiagonal op;

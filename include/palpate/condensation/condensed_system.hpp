@@ -49,8 +49,8 @@ class CondensedSystem {
   std::size_t column_bytes() const noexcept { return dense_.bytes(); }
 
   /// x = K^-1 b for a load on any dof, condensed ones included: u_k from f_k + P_f f_c, then u_c = K_cc^-1 (f_c - K_ck
-  /// u_k). No allocation.
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
+  /// u_k). Allocates only when it has several threads, those of a set-up; the result is the same.
+  SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads = 1) noexcept;
   /// Displacements of the kept dofs under a unit force on kept dof j. No allocation.
   SolveReport compliance_column(Index j, VectorX& column) noexcept;
 

@@ -26,11 +26,12 @@ PALPATE_INLINE bool CondensedSystem::is_good(const BinaryReader& in) noexcept {
   return in.good();
 }
 
-PALPATE_INLINE SolveReport CondensedSystem::solve_into(const VectorX& b, VectorX& x) noexcept {
-  interior_.eliminate_into(b, kept_load_);
+PALPATE_INLINE SolveReport CondensedSystem::solve_into(const VectorX& b, VectorX& x,
+                                                       const SetupThreads& threads) noexcept {
+  interior_.eliminate_into(b, kept_load_, threads);
   const SolveReport report = dense_.solve_into(kept_load_, kept_answer_);
   detail::fill(kept_load_, 0.0);
-  interior_.recover_into(kept_answer_, x);
+  interior_.recover_into(kept_answer_, x, threads);
   return report;
 }
 

@@ -22,7 +22,9 @@ class Uncondensed {
   Index size() const noexcept { return solver_.size(); }
   Index kept() const noexcept { return static_cast<Index>(kept_.size()); }
   std::size_t bytes() const noexcept { return solver_.bytes(); }
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_.solve_into(b, x); }
+  SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads = 1) noexcept {
+    return solver_.solve_into(b, x, threads);
+  }
   /// Displacements of the kept dofs under a unit force on kept dof j. No allocation.
   SolveReport compliance_column(Index j, VectorX& column) noexcept;
 

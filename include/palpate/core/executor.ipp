@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -30,7 +29,7 @@ PALPATE_INLINE void StartedThreads::run(int count, const ExecutorTask& task) con
 #endif
     for (int i = 1; i < count; ++i) started.emplace_back(work);
 #if defined(PALPATE_HAS_EXCEPTIONS)
-  } catch (const std::system_error&) {  // no more threads: the others do the work
+  } catch (...) {  // no more threads, or no memory for one: the others do the work
   }
 #endif
   if (count > 0) task(0);

@@ -5,8 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Estimate of |K^-1|_1 for symmetric K from a few solves (Hager 1984, Higham 1988; usually within a factor 3, always
-/// a lower bound). Allocates; NaN when a solve is not finite.
+/// Estimate of |K^-1|_1 for symmetric K (Hager 1984, Higham 1988; usually within a factor 3, always a lower bound) from
+/// two to ten solves, usually four to six. Allocates; NaN when a solve is not finite.
 double inverse_norm_estimate(SolverView solver);
 
 /// Lower bound of |K|_2 |K^-1|_2 from ten steps of the power method and two of inverse iteration: for solvers whose

@@ -10,10 +10,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+/// Writes the signs of y; returns whether any has changed.
+inline bool take_signs(const VectorX& y, VectorX& signs) noexcept {
+  bool changed = false;
+  for (Index i = 0; i < y.size(); ++i) {
+    const double sign = y.data()[i] >= 0.0 ? 1.0 : -1.0;
+    changed = changed || sign != signs.data()[i];
+    signs.data()[i] = sign;
+  }
+  return changed;
+}
+
+}  // namespace detail
+
 PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
   const Index n = solver.size();
   if (n == 0) return 0.0;
-  VectorX x(n), y(n), z(n);
+  VectorX x(n), y(n), z(n), signs = detail::zeros(n);
   detail::fill(x, 1.0 / static_cast<double>(n));
   double estimate = 0.0;
   for (int sweep = 0; sweep < 5; ++sweep) {
@@ -21,14 +36,14 @@ PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
     double norm = 0.0;
     for (Index i = 0; i < n; ++i) norm += std::abs(y.data()[i]);
     if (!std::isfinite(norm)) return norm;
-    if (sweep > 0 && norm <= estimate) break;
+    if (norm <= estimate) break;
     estimate = norm;
-    for (Index i = 0; i < n; ++i) x.data()[i] = y.data()[i] >= 0.0 ? 1.0 : -1.0;
-    solver.solve_into(x, z);
+    if (!detail::take_signs(y, signs)) break;
+    solver.solve_into(signs, z);
     Index largest = 0;
     for (Index i = 1; i < n; ++i)
       if (std::abs(z.data()[i]) > std::abs(z.data()[largest])) largest = i;
-    if (sweep > 0 && std::abs(z.data()[largest]) <= std::abs(detail::dot(z, x)) / static_cast<double>(n)) break;
+    if (std::abs(z.data()[largest]) <= detail::dot(z, x)) break;  // a local maximum of the norm
     detail::fill(x, 0.0);
     x.data()[largest] = 1.0;
   }

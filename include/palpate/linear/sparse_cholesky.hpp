@@ -58,18 +58,19 @@ class SparseCholesky {
   Index factor_nonzeros() const noexcept;
   std::size_t bytes() const noexcept;
 
-  /// x = K^-1 b; b and x may be the same vector. An interior factor sets the kept dofs to zero.
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept;
+  /// x = K^-1 b; b and x may be the same vector. An interior factor sets the kept dofs to zero. In a set-up, several
+  /// threads read a large factor faster: allocates then, and gives the same bits. So do the functions below.
+  SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads = 1) noexcept;
 
   /// Solves for several right-hand sides. Allocates a workspace; for set-up.
   MatrixX solve(const MatrixX& b) const;
 
   /// Interior factor: kept_load = b_k - K_ki K_ii^-1 b_i; stores b_i for `recover_into`. No allocation when kept_load
   /// has its size.
-  void eliminate_into(const VectorX& b, VectorX& kept_load) noexcept;
+  void eliminate_into(const VectorX& b, VectorX& kept_load, const SetupThreads& threads = 1) noexcept;
   /// Interior factor: x from the kept part of the solution and the load of the last `eliminate_into`. No allocation
   /// when x has its size.
-  void recover_into(const VectorX& kept_answer, VectorX& x) noexcept;
+  void recover_into(const VectorX& kept_answer, VectorX& x, const SetupThreads& threads = 1) noexcept;
   /// `recover_into` without a load; needs no `eliminate_into` before.
   void extend_into(const VectorX& kept_answer, VectorX& x) noexcept;
 

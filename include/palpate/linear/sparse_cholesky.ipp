@@ -135,12 +135,13 @@ PALPATE_INLINE std::size_t SparseCholesky::bytes() const noexcept {
   return factor_ ? factor_->values.bytes() : 0;
 }
 
-PALPATE_INLINE SolveReport SparseCholesky::solve_into(const VectorX& b, VectorX& x) noexcept {
+PALPATE_INLINE SolveReport SparseCholesky::solve_into(const VectorX& b, VectorX& x,
+                                                      const SetupThreads& threads) noexcept {
   if (factor_) {
     sweeps_.scatter(b.data());
-    sweeps_.forward_all();
+    sweeps_.forward_all(threads);
     hold_kept();
-    sweeps_.backward_all();
+    sweeps_.backward_all(threads);
     sweeps_.gather(x.data());
   }
   return {true, 0, std::numeric_limits<double>::quiet_NaN()};
@@ -152,14 +153,16 @@ PALPATE_INLINE MatrixX SparseCholesky::solve(const MatrixX& b) const {
   return x;
 }
 
-PALPATE_INLINE void SparseCholesky::eliminate_into(const VectorX& b, VectorX& kept_load) noexcept {
+PALPATE_INLINE void SparseCholesky::eliminate_into(const VectorX& b, VectorX& kept_load,
+                                                   const SetupThreads& threads) noexcept {
   sweeps_.scatter(b.data());
-  sweeps_.forward_all();
+  sweeps_.forward_all(threads);
   take_kept(kept_load);
 }
-PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, VectorX& x) noexcept {
+PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, VectorX& x,
+                                                 const SetupThreads& threads) noexcept {
   give_kept(kept_answer);
-  sweeps_.backward_all();
+  sweeps_.backward_all(threads);
   sweeps_.gather(x.data());
 }
 

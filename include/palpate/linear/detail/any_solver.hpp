@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/core/executor.hpp>
 
 #include <memory>
 #include <span>
@@ -18,6 +19,22 @@ concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const
   { s.solve_path_into(dofs, loads, dofs, answer) }
   noexcept;
 };
+
+/// A solver that can use the threads of a set-up, with the same result.
+template <class S>
+concept ThreadedSolver = requires(S& s, const VectorX& b, VectorX& x, const SetupThreads& threads) {
+  { s.solve_into(b, x, threads) }
+  noexcept;
+};
+
+/// Solves on the threads of a set-up if the solver can.
+template <class S>
+SolveReport solve_on(const SetupThreads& threads, S& solver, const VectorX& b, VectorX& x) noexcept {
+  if constexpr (ThreadedSolver<S>)
+    return solver.solve_into(b, x, threads);
+  else
+    return solver.solve_into(b, x);
+}
 
 /// Owns any copyable SpdOperator; copying copies the operator. One indirect call per product.
 class AnyOperator {
@@ -80,7 +97,9 @@ class AnySolver {
 
   Index size() const noexcept { return solver_ ? solver_->size() : 0; }
   std::size_t bytes() const noexcept { return solver_ ? solver_->bytes() : 0; }
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_->solve_into(b, x); }
+  SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads = 1) noexcept {
+    return solver_->solve_into(b, x, threads);
+  }
   /// Entries `wanted` of the solution for `loads` on a few dofs. Returns false and does nothing when the solver is no
   /// PathSolver.
   bool solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
@@ -96,7 +115,7 @@ class AnySolver {
     virtual std::unique_ptr<Base> copy() const = 0;
     virtual Index size() const noexcept = 0;
     virtual std::size_t bytes() const noexcept = 0;
-    virtual SolveReport solve_into(const VectorX& b, VectorX& x) noexcept = 0;
+    virtual SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads) noexcept = 0;
     virtual bool solve_path_into(std::span<const Index> loaded, std::span<const double> loads,
                                  std::span<const Index> wanted, std::span<double> answer) noexcept = 0;
     virtual bool write(BinaryWriter& out) const = 0;
@@ -110,7 +129,9 @@ class AnySolver {
       if constexpr (requires { solver.bytes(); }) return static_cast<std::size_t>(solver.bytes());
       return sizeof solver;
     }
-    SolveReport solve_into(const VectorX& b, VectorX& x) noexcept override { return solver.solve_into(b, x); }
+    SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads) noexcept override {
+      return solve_on(threads, solver, b, x);
+    }
     bool solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
                          std::span<double> answer) noexcept override {
       if constexpr (PathSolver<S>) solver.solve_path_into(loaded, loads, wanted, answer);

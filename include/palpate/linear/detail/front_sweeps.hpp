@@ -1,6 +1,7 @@
 // Solves with a multifrontal factor: forward and backward substitution over all fronts or over a few.
 #pragma once
 
+#include <palpate/core/executor.hpp>
 #include <palpate/linear/detail/indexed_vector.hpp>
 
 #include <span>
@@ -21,8 +22,9 @@ class FrontSweeps {
   void scatter(const double* by_dof) noexcept;
   void gather(double* by_dof) const noexcept;
 
-  void forward_all() noexcept;
-  void backward_all() noexcept;
+  /// On the threads of a set-up when the factor is large enough; then allocates. The same bits for any number.
+  void forward_all(const SetupThreads& threads = 1) noexcept;
+  void backward_all(const SetupThreads& threads = 1) noexcept;
 
   /// Forward substitution for loads on a few dofs, which may be listed twice; visits only the fronts above them.
   void forward_path(std::span<const Index> loaded, std::span<const double> loads) noexcept;
@@ -30,6 +32,9 @@ class FrontSweeps {
   void backward_path(std::span<const Index> wanted, std::span<double> answer) noexcept;
 
  private:
+  /// Calls sweep(ParallelSweeps&); false when one thread is to do it.
+  template <class Sweep>
+  bool share(const SetupThreads& threads, Sweep&& sweep) noexcept;
   Index collect(std::span<const Index> dofs, IndexedVector<std::uint64_t>& marks) noexcept;
   void clear(const Front& f) noexcept;
   void forward(const Front& f) noexcept;

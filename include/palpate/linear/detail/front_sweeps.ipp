@@ -3,6 +3,7 @@
 
 #include <palpate/linear/detail/front_sweeps.hpp>
 #include <palpate/linear/detail/one_front.hpp>
+#include <palpate/linear/detail/parallel_sweeps.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <algorithm>
@@ -28,10 +29,28 @@ PALPATE_INLINE void FrontSweeps::gather(double* by_dof) const noexcept {
   for (Index i = 0; i < values_.size(); ++i) by_dof[i] = values[tree_->place_of_dof[i]];
 }
 
-PALPATE_INLINE void FrontSweeps::forward_all() noexcept {
+template <class Sweep>
+bool FrontSweeps::share(const SetupThreads& threads, Sweep&& sweep) noexcept {
+  if (!ParallelSweeps::are_worthwhile(*tree_, threads)) return false;
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+#endif
+    ParallelSweeps sweeps(*tree_, factor_, fronts_, values_.data(), threads);
+    sweep(sweeps);
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  } catch (...) {  // no memory for it, and nothing is changed yet
+    return false;
+  }
+#endif
+  return true;
+}
+
+PALPATE_INLINE void FrontSweeps::forward_all(const SetupThreads& threads) noexcept {
+  if (share(threads, [](ParallelSweeps& sweeps) { sweeps.forward(); })) return;
   for (Index f = 0; f < fronts_; ++f) forward(tree_->fronts[f]);
 }
-PALPATE_INLINE void FrontSweeps::backward_all() noexcept {
+PALPATE_INLINE void FrontSweeps::backward_all(const SetupThreads& threads) noexcept {
+  if (share(threads, [](ParallelSweeps& sweeps) { sweeps.backward(); })) return;
   for (Index f = fronts_ - 1; f >= 0; --f) backward(tree_->fronts[f]);
 }
 

@@ -71,7 +71,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
   elastic_body().report_locking(report);
   statics_ = std::make_unique<Statics>(elastic_body(), this->scene(), touchable.nodes, make_stiffness, recipe, limits(),
                                        options.cache_file, report);
-  statics_->set_conditions(this->scene(), gravity(), reporting_to(report));
+  statics_->set_conditions(this->scene(), gravity(), reporting_to(report), limits().threads);
   shell_nodes_ = touchable.shell_nodes;
   prepare_contact(touchable, recipe.eager, options);
   if (options.force_error.measure != nullptr) measure_force_error(options.force_error);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/condensation.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 
 #include <concepts>
 #include <memory>
@@ -31,7 +32,9 @@ class AnyStaticSystem {
   /// Upper bound of the bytes that `compliance_column` reads per sweep or iteration; the whole system unless it has a
   /// function `column_bytes()`.
   std::size_t column_bytes() const noexcept { return system_ ? system_->column_bytes() : 0; }
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system_->solve_into(b, x); }
+  SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads = 1) noexcept {
+    return system_->solve_into(b, x, threads);
+  }
   SolveReport compliance_column(Index j, VectorX& column) noexcept { return system_->compliance_column(j, column); }
   /// Writes a system that can be stored; writes nothing for others.
   void write(BinaryWriter& out) const { system_->write(out); }
@@ -44,7 +47,7 @@ class AnyStaticSystem {
     virtual Index kept() const noexcept = 0;
     virtual std::size_t bytes() const noexcept = 0;
     virtual std::size_t column_bytes() const noexcept = 0;
-    virtual SolveReport solve_into(const VectorX& b, VectorX& x) noexcept = 0;
+    virtual SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads) noexcept = 0;
     virtual SolveReport compliance_column(Index j, VectorX& column) noexcept = 0;
     virtual void write(BinaryWriter& out) const = 0;
   };
@@ -61,7 +64,9 @@ class AnyStaticSystem {
       else
         return bytes();
     }
-    SolveReport solve_into(const VectorX& b, VectorX& x) noexcept override { return system.solve_into(b, x); }
+    SolveReport solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads) noexcept override {
+      return solve_on(threads, system, b, x);
+    }
     SolveReport compliance_column(Index j, VectorX& column) noexcept override {
       return system.compliance_column(j, column);
     }

@@ -53,7 +53,6 @@ struct SystemSource {
   /// much as reading the file.
   std::optional<AnyStaticSystem> read(PreparedCache& cache, SetupReport& report) const;
   AnyStaticSystem make(SetupReport& report) const;
-  /// Estimates by two threads when the system is large.
   void estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system, SetupReport& report) const;
   /// Flags or refuses the system by its measured accuracy.
   void judge(SetupReport& report) const;
@@ -63,7 +62,6 @@ struct SystemSource {
   /// does not find. Only checked when digits are lost.
   void require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system, const SetupReport& report) const;
 
-  static constexpr std::size_t worth_a_thread = std::size_t{1} << 24;  // [bytes] to read per solve
   static constexpr double flagged_probe_error = 1e-6;
   static constexpr double flagged_condition = 1e12;
   static constexpr double refused_probe_error = 1e-3;

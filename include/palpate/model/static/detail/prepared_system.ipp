@@ -13,6 +13,19 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+/// A system as a LinearSolver that solves on the threads of a set-up.
+struct SolvesOnThreads {
+  AnyStaticSystem& system;
+  const SetupThreads& threads;
+
+  Index size() const noexcept { return system.size(); }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system.solve_into(b, x, threads); }
+};
+
+}  // namespace detail
+
 PALPATE_INLINE AnyStaticSystem SystemSource::prepare(const std::string& cache_file, SetupReport& report) const {
   if (!cache_file.empty()) {
     if (recipe.read != nullptr) return prepare_with(cache_file, report);
@@ -49,7 +62,8 @@ PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& 
   cache.payload().value(condition);
   std::optional<AnyStaticSystem> system(recipe.read(cache.payload(), *stiffness.matrix(), conditions, dofs, limits));
   if (!cache.verify()) return std::nullopt;
-  const double error = probe_error(FreeStiffness(stiffness.view(), conditions), *system);
+  detail::SolvesOnThreads solver{*system, limits.threads};
+  const double error = probe_error(FreeStiffness(stiffness.view(), conditions), solver);
   if (!(error <= refused_probe_error)) {
     cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
     return std::nullopt;
@@ -76,28 +90,19 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
 
 PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system,
                                                     SetupReport& report) const {
-  const auto probe = [&] { report.probe_error = probe_error(free, system); };
-  if (recipe.iterative) {
-    probe();
-    report.condition_estimate = condition_by_iteration(free, system);
-    return;
-  }
-  const auto estimate = [&](AnyStaticSystem& by) {
-    report.condition_estimate = free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(by);
-  };
-  if (limits.threads.threads() < 2 || system.bytes() < worth_a_thread) {
-    probe();
-    return estimate(system);
-  }
-  AnyStaticSystem other = system;  // shares the factor
-  limits.threads.run(2, [&](int task) { task == 0 ? probe() : estimate(other); });
+  detail::SolvesOnThreads solver{system, limits.threads};
+  report.probe_error = probe_error(free, solver);
+  report.condition_estimate = recipe.iterative
+                                  ? condition_by_iteration(free, solver)
+                                  : free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(solver);
 }
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
   const bool doubtful = report.probe_error > flagged_probe_error || is_ill_conditioned(report);
   if (!doubtful) return;
-  const SoftestMotion softest = probe_softest_motion(free, system);
+  detail::SolvesOnThreads solver{system, limits.threads};
+  const SoftestMotion softest = probe_softest_motion(free, solver);
   if (!(softest.error > refused_softest_error)) return;
   SetupProblem p;
   p.kind = SetupErrorKind::ill_conditioned;

@@ -34,8 +34,9 @@ class Statics {
   ~Statics();
 
   /// Sets loads, prescribed values and initial strains of a scene; `gravity` [m/s^2] in the body frame. Solves once,
-  /// and passes the new displacement to `look` before anything is changed. Strong guarantee.
-  void set_conditions(const Scene& scene, const Vector3& gravity, const Look& look);
+  /// and passes the new displacement to `look` before anything is changed. `threads` are those of a set-up. Strong
+  /// guarantee.
+  void set_conditions(const Scene& scene, const Vector3& gravity, const Look& look, const SetupThreads& threads = 1);
 
   /// Changes gravity [m/s^2], body frame, and solves once; `look` as above. Throws bad_density when a region has no
   /// density. Strong guarantee.
@@ -65,9 +66,9 @@ class Statics {
 
   /// Solution for given loads; changes only workspaces. Throws bad_density, non_finite or not_converged.
   Loaded solve_loads(const VectorX& applied, const VectorX& strain_load, const VectorX& prescribed,
-                     const Vector3& gravity);
+                     const Vector3& gravity, const SetupThreads& threads);
   void accept(Loaded& loaded) noexcept;
-  SolveReport solve_free(const VectorX& load, VectorX& u) noexcept;
+  SolveReport solve_free(const VectorX& load, VectorX& u, const SetupThreads& threads) noexcept;
   void require_density(const Vector3& gravity) const;
   DofLayout layout(const std::vector<NodeId>& kept_nodes) const;
 

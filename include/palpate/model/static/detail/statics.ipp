@@ -35,7 +35,8 @@ PALPATE_INLINE Statics::Statics(ElasticBody& body, const Scene& scene, const std
 
 PALPATE_INLINE Statics::~Statics() = default;
 
-PALPATE_INLINE void Statics::set_conditions(const Scene& scene, const Vector3& gravity, const Look& look) {
+PALPATE_INLINE void Statics::set_conditions(const Scene& scene, const Vector3& gravity, const Look& look,
+                                            const SetupThreads& threads) {
   EssentialConditions conditions = body_->conditions(scene);
   if (conditions.constrained != conditions_.constrained)
     raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
@@ -43,7 +44,7 @@ PALPATE_INLINE void Statics::set_conditions(const Scene& scene, const Vector3& g
   std::vector<Vector6> strains = body_->initial_strains(scene);
   VectorX strain_load = body_->initial_strain_load(strains);
   VectorX applied = body_->applied_load(scene);
-  Loaded loaded = solve_loads(applied, strain_load, conditions.prescribed, gravity);
+  Loaded loaded = solve_loads(applied, strain_load, conditions.prescribed, gravity, threads);
   look(loaded.displacement);
   conditions_.prescribed.swap(conditions.prescribed);
   body_->swap_initial_strains(strains);
@@ -53,7 +54,7 @@ PALPATE_INLINE void Statics::set_conditions(const Scene& scene, const Vector3& g
 }
 
 PALPATE_INLINE void Statics::set_gravity(const Vector3& gravity, const Look& look) {
-  Loaded loaded = solve_loads(applied_, strain_load_, conditions_.prescribed, gravity);
+  Loaded loaded = solve_loads(applied_, strain_load_, conditions_.prescribed, gravity, 1);
   look(loaded.displacement);
   accept(loaded);
 }
@@ -68,7 +69,7 @@ PALPATE_INLINE SolveReport Statics::displacement_with(std::span<const VertexForc
       add_node_vector(scratch_, node_of_vertex[static_cast<std::size_t>(vertex)], force.in_model_axes());
     else
       all_exist = false;
-  SolveReport report = solve_free(scratch_, u);
+  SolveReport report = solve_free(scratch_, u, 1);
   u += displacement_;
   if (!all_exist) {
     report.converged = false;
@@ -92,7 +93,8 @@ PALPATE_INLINE VectorX Statics::reactions() const {
 }
 
 PALPATE_INLINE Statics::Loaded Statics::solve_loads(const VectorX& applied, const VectorX& strain_load,
-                                                    const VectorX& prescribed, const Vector3& gravity) {
+                                                    const VectorX& prescribed, const Vector3& gravity,
+                                                    const SetupThreads& threads) {
   require_density(gravity);
   Loaded loaded{applied, VectorX(applied.size())};
   for (Index i = 0; i < mass_.size(); ++i) add_node_vector(loaded.load, i, mass_[i] * gravity);
@@ -100,7 +102,7 @@ PALPATE_INLINE Statics::Loaded Statics::solve_loads(const VectorX& applied, cons
   full_load_ = loaded.load;
   full_load_ += strain_load;
   full_load_ -= scratch_;
-  const SolveReport solved = solve_free(full_load_, loaded.displacement);
+  const SolveReport solved = solve_free(full_load_, loaded.displacement, threads);
   loaded.displacement += prescribed;
   if (!all_finite(loaded.displacement) || !all_finite(full_load_))
     raise(SetupErrorKind::non_finite, "the static displacement is not finite",
@@ -117,9 +119,9 @@ PALPATE_INLINE void Statics::accept(Loaded& loaded) noexcept {
   displacement_.swap(loaded.displacement);
 }
 
-PALPATE_INLINE SolveReport Statics::solve_free(const VectorX& load, VectorX& u) noexcept {
+PALPATE_INLINE SolveReport Statics::solve_free(const VectorX& load, VectorX& u, const SetupThreads& threads) noexcept {
   conditions_.gather(load, free_load_);
-  const SolveReport report = system_.solve_into(free_load_, free_answer_);
+  const SolveReport report = system_.solve_into(free_load_, free_answer_, threads);
   conditions_.scatter(free_answer_, u);
   return report;
 }
