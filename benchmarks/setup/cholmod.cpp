@@ -85,6 +85,9 @@ Cholmod::~Cholmod() {
 double Cholmod::analysis_seconds() const noexcept {
   return implementation_->analysis_seconds;
 }
+double Cholmod::peak_bytes() const noexcept {
+  return static_cast<double>(implementation_->common.memory_usage);
+}
 double Cholmod::flops() const noexcept {
   return implementation_->common.fl;
 }
@@ -122,6 +125,9 @@ void Cholmod::set_threads(int) noexcept {}
 Cholmod::Cholmod(const palpate::SparseMatrix&) {}
 Cholmod::~Cholmod() = default;
 double Cholmod::analysis_seconds() const noexcept {
+  return unknown;
+}
+double Cholmod::peak_bytes() const noexcept {
   return unknown;
 }
 double Cholmod::flops() const noexcept {

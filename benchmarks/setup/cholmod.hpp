@@ -23,7 +23,8 @@ class Cholmod {
   ~Cholmod();
 
   double analysis_seconds() const noexcept;
-  double flops() const noexcept;  ///< multiplications and additions of its factorisation
+  double peak_bytes() const noexcept;  ///< the most that it had allocated so far
+  double flops() const noexcept;       ///< multiplications and additions of its factorisation
   void factorise();
   palpate::VectorX solve(const palpate::VectorX& b) const;
 

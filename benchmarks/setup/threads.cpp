@@ -1,4 +1,5 @@
-// Factorisation and whole set-up by one and by two threads, compared with CHOLMOD on the same threads. Wall time.
+// Factorisation and whole set-up by one and by two threads, compared with CHOLMOD on the same threads and with Eigen.
+// Wall time.
 #include "../common/bodies.hpp"
 #include "../common/touching.hpp"
 #include "cholmod.hpp"
@@ -7,6 +8,8 @@
 
 #include <palpate/linear/detail/front_tree.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
+
+#include <Eigen/SparseCholesky>
 
 #include <array>
 #include <chrono>
@@ -122,6 +125,27 @@ void describe_growth(Session& session, const bench::SupportedBody& body, const C
   before = now;
 }
 
+void compare_with_eigen(Session& session, const bench::System& system, double two_threads, const std::string& where) {
+  using Solver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>;
+  constexpr Index soon = 15'000, long_run = 70'000;  // dofs: seconds and a minute
+  const std::string what = "two threads / Eigen's SimplicialLDLT, one thread" + where;
+  if (system.lower.rows() > (session.long_run ? long_run : soon))
+    return session.rows.skip("v", what, "it would take too long");
+  Solver solver;
+  solver.analyzePattern(system.lower);
+  const double theirs = wall_seconds([&] { solver.factorize(system.lower); });
+  const VectorX b = bench::random_matrix(system.lower.rows(), 1);
+  session.rows.add({.target = "v",
+                    .what = what,
+                    .figure = bench::milliseconds(two_threads),
+                    .baseline = bench::milliseconds(theirs) + ", factor of " +
+                                bench::megabytes((sizeof(double) + sizeof(Index)) *
+                                                 static_cast<double>(solver.matrixL().nestedExpression().nonZeros())),
+                    .ratio = two_threads / theirs,
+                    .bound = {},
+                    .error = error_over(system.residual(solver.solve(b), b), 1e-10, "Eigen's residual")});
+}
+
 void factorise(Session& session, const bench::SupportedBody& body, const std::string& where) {
   const bench::System system(body);
   const CholeskyAnalysis analysis(system.lower, system.layout);
@@ -146,12 +170,10 @@ void factorise(Session& session, const bench::SupportedBody& body, const std::st
                     .bound = body.mesh.element_count() > 90000 ? bench::at_least(1.7) : bench::Bound{},
                     .error = error});
   solver = {};
+  compare_with_eigen(session, system, times[1], where);
   predict_threads(session, analysis, system, times[1], where);
   describe_levels(session, analysis, where);
   describe_growth(session, body, analysis, where);
-  constexpr double most_operations = 2e12;  // minutes
-  if (analysis.flops() > most_operations)
-    return session.rows.skip("v", "two threads / CHOLMOD's" + where, "it would take too long");
   if (!Cholmod::available())
     return session.rows.skip("v", "two threads / CHOLMOD's" + where, "libsuitesparse-dev is not installed");
   Cholmod cholmod(system.lower);
@@ -162,6 +184,8 @@ void factorise(Session& session, const bench::SupportedBody& body, const std::st
       },
       [](int) {});
   Cholmod::set_threads(1);
+  inform(session, "peak memory with two threads, CHOLMOD's" + where, bench::megabytes(analysis.peak_bytes(2)),
+         bench::megabytes(cholmod.peak_bytes()));
   for (const std::size_t i : {0, 1})
     session.rows.add({.target = "v",
                       .what = (i == 0 ? "one thread / CHOLMOD's" : "two threads / CHOLMOD's") + where,
