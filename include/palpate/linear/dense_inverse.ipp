@@ -33,8 +33,8 @@ void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, con
 }  // namespace detail
 
 template <std::floating_point Scalar>
-DenseInverse<Scalar>::DenseInverse(MatrixX matrix, const SetupLimits&) {
-  SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite");
+DenseInverse<Scalar>::DenseInverse(MatrixX matrix, const SetupLimits& limits) {
+  SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
   if constexpr (std::same_as<Scalar, double>) {
     inverse_ = std::make_shared<const Matrix>(std::move(matrix));
   } else {

@@ -66,7 +66,7 @@ class CutBase {
       const BlockMatrix k = assemble_stiffness<E>(supported, limits);
       SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
       if (schur.stiffness.rows() > 0)
-        SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite");
+        SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
       interior_ = std::move(schur.interior);
       compliance_ = std::make_shared<const MatrixX>(std::move(schur.stiffness));
       load = free_load(topology, physics, k, conditions, node_map);

@@ -1,6 +1,7 @@
 // Products of dense matrices, compiled once for all shapes of operands.
 #pragma once
 
+#include <palpate/core/executor.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/linear/detail/kernel_types.hpp>
 
@@ -10,8 +11,11 @@ using any_flags::Operand;
 using any_flags::Read;
 using any_flags::Target;
 
-/// c = c + factor a b, where a has `depth` columns. The operands must not overlap c. Allocates its packed copies.
-void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth);
+/// c = c + factor a b, where a has `depth` columns. The operands must not overlap c; only one of them, and not that of
+/// a lower half, may be symmetric. Allocates its packed copies. A large product is divided among the threads; the
+/// result has the same bits.
+void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth,
+                 const SetupThreads& threads = 1);
 
 /// a b and a^T b.
 MatrixX product(const MatrixX& a, const MatrixX& b);

@@ -7,12 +7,65 @@
 #include <palpate/linear/detail/product_kernels.hpp>
 
 #include <algorithm>
+#include <atomic>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-PALPATE_INLINE void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth) {
-  BigArray packed(product_workspace(c, depth));
-  processor_kernels().add_product({c, factor, a, b, depth, packed.data()});
+inline Operand rows_from(const Operand& m, Index first) noexcept {
+  return {m.data + first * (m.read == Read::plain ? 1 : m.stride), m.stride, m.read};
+}
+inline Operand columns_from(const Operand& m, Index first) noexcept {
+  return {m.data + first * (m.read == Read::plain ? m.stride : 1), m.stride, m.read};
+}
+
+/// Rows or columns of a product that one thread computes. A multiple of the tiles of all processors, so that every tile
+/// is the same as in the undivided product.
+inline constexpr Index product_stripe = 10 * largest_tile;
+static_assert(product_stripe % tile_rows == 0 && product_stripe % tile_columns == 0);
+
+/// The part of a product that begins at row `first`, when b is symmetric, or at column `first`.
+inline any_flags::ProductJob stripe_of(const any_flags::ProductJob& whole, Index first) noexcept {
+  any_flags::ProductJob part = whole;
+  Target& c = part.c;
+  if (whole.b.read == Read::symmetric) {
+    c.data += first;
+    c.rows = std::min(product_stripe, c.rows - first);
+    part.a = rows_from(whole.a, first);
+    return part;
+  }
+  c.data += first * c.stride;
+  c.columns = std::min(product_stripe, c.columns - first);
+  part.b = columns_from(whole.b, first);
+  if (c.lower) {  // rows above the diagonal are not computed
+    c.data += first;
+    c.rows -= first;
+    part.a = rows_from(whole.a, first);
+  }
+  return part;
+}
+
+PALPATE_INLINE void add_product(const Target& c, double factor, const Operand& a, const Operand& b, Index depth,
+                                const SetupThreads& threads) {
+  constexpr double least_work = 3e7;  // multiplications and additions: a thread takes as long to start as 1e6 of them
+  any_flags::ProductJob whole{c, factor, a, b, depth, nullptr};
+  const Index size = b.read == Read::symmetric ? c.rows : c.columns;
+  const Index stripes = (size + product_stripe - 1) / product_stripe;
+  const double work = static_cast<double>(c.rows) * static_cast<double>(c.columns) * static_cast<double>(depth);
+  if (threads.threads() < 2 || stripes < 2 || work < least_work) {
+    BigArray packed(product_workspace(c, depth));
+    whole.packed = packed.data();
+    return processor_kernels().add_product(whole);
+  }
+  std::atomic<Index> next{0};
+  threads.run(static_cast<int>(std::min<Index>(threads.threads(), stripes)), [&](int) {
+    BigArray packed;
+    for (Index i = next++; i < stripes; i = next++) {
+      any_flags::ProductJob part = stripe_of(whole, i * product_stripe);
+      if (packed.size() == 0) packed = BigArray(product_workspace(whole.c, depth));
+      part.packed = packed.data();
+      processor_kernels().add_product(part);
+    }
+  });
 }
 
 PALPATE_INLINE MatrixX product(const MatrixX& a, const MatrixX& b) {

@@ -1,6 +1,7 @@
 // The inverse of a dense symmetric positive definite matrix.
 #pragma once
 
+#include <palpate/core/executor.hpp>
 #include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -11,13 +12,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 class SpdInverse {
  public:
   /// Throws not_positive_definite with `what` for a pivot that is not finite, not positive or below `threshold` times
-  /// its own diagonal entry. The upper half is not read; afterwards the matrix is symmetric to the last bit.
-  static void invert(MatrixX& matrix, double threshold, const char* what);
+  /// its own diagonal entry. The upper half is not read; afterwards the matrix is symmetric to the last bit. The
+  /// threads share large products; the result has the same bits.
+  static void invert(MatrixX& matrix, double threshold, const char* what, const SetupThreads& threads = 1);
 
  private:
   static constexpr Index leaf = 64;
 
-  SpdInverse(MatrixX& matrix, double threshold);
+  SpdInverse(MatrixX& matrix, double threshold, const SetupThreads& threads);
   void split(Index begin, Index size);
   void invert_leaf(Index begin, Index size);
   double* at(Index i, Index j) noexcept { return a_ + i + j * n_; }
@@ -26,6 +28,7 @@ class SpdInverse {
   Index n_;
   VectorX diagonal_;
   double threshold_;
+  const SetupThreads& threads_;
   double worst_ = 1.0;  // smallest pivot so far, relative to its diagonal entry; NaN ends the inversion
 };
 

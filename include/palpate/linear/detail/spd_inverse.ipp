@@ -12,8 +12,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE void SpdInverse::invert(MatrixX& matrix, double threshold, const char* what) {
-  SpdInverse inverse(matrix, threshold);
+PALPATE_INLINE void SpdInverse::invert(MatrixX& matrix, double threshold, const char* what,
+                                       const SetupThreads& threads) {
+  SpdInverse inverse(matrix, threshold, threads);
   const Index n = matrix.rows();
   inverse.split(0, n);
   bool good = inverse.worst_ > threshold;
@@ -32,8 +33,8 @@ PALPATE_INLINE void SpdInverse::invert(MatrixX& matrix, double threshold, const 
       for (Index i = std::max(first, j + 1); i < std::min(first + block, n); ++i) *inverse.at(j, i) = *inverse.at(i, j);
 }
 
-PALPATE_INLINE SpdInverse::SpdInverse(MatrixX& matrix, double threshold)
-    : a_(matrix.data()), n_(matrix.rows()), diagonal_(matrix.rows()), threshold_(threshold) {
+PALPATE_INLINE SpdInverse::SpdInverse(MatrixX& matrix, double threshold, const SetupThreads& threads)
+    : a_(matrix.data()), n_(matrix.rows()), diagonal_(matrix.rows()), threshold_(threshold), threads_(threads) {
   for (Index j = 0; j < n_; ++j) diagonal_.data()[j] = *at(j, j);
 }
 
@@ -47,12 +48,12 @@ PALPATE_INLINE void SpdInverse::split(Index begin, Index size) {
   double* const a22 = at(begin + m, begin + m);
   split(begin, m);
   std::vector<double> t(static_cast<std::size_t>(rest * m), 0.0);
-  detail::add_product({t.data(), rest, m, rest}, 1.0, {a21, n_}, {a11, n_, Read::symmetric}, m);
-  detail::add_product({a22, rest, rest, n_, true}, -1.0, {t.data(), rest}, {a21, n_, Read::transposed}, m);
+  detail::add_product({t.data(), rest, m, rest}, 1.0, {a21, n_}, {a11, n_, Read::symmetric}, m, threads_);
+  detail::add_product({a22, rest, rest, n_, true}, -1.0, {t.data(), rest}, {a21, n_, Read::transposed}, m, threads_);
   split(begin + m, rest);
   for (Index j = 0; j < m; ++j) std::fill_n(a21 + j * n_, rest, 0.0);
-  detail::add_product({a21, rest, m, n_}, -1.0, {a22, n_, Read::symmetric}, {t.data(), rest}, rest);
-  detail::add_product({a11, m, m, n_, true}, -1.0, {t.data(), rest, Read::transposed}, {a21, n_}, rest);
+  detail::add_product({a21, rest, m, n_}, -1.0, {a22, n_, Read::symmetric}, {t.data(), rest}, rest, threads_);
+  detail::add_product({a11, m, m, n_, true}, -1.0, {t.data(), rest, Read::transposed}, {a21, n_}, rest, threads_);
 }
 
 /// Cholesky in a copy, column by column, then the inverse of its factor L, then L^-T L^-1.
