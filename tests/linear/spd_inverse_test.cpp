@@ -5,7 +5,9 @@
 #include <palpate/linear/detail/spd_inverse.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "linear/large_case.hpp"
 
@@ -35,9 +37,9 @@ struct Product {
 };
 constexpr Index rows = 517, columns = 733, depth = 301;
 
-MatrixX operand(Read read, Index rows, Index columns) {
-  if (read == Read::transposed) return random_values(columns, rows);
-  MatrixX m = random_values(rows, columns);
+MatrixX operand(Read read, Index n, Index k) {
+  if (read == Read::transposed) return random_values(k, n);
+  MatrixX m = random_values(n, k);
   if (read == Read::symmetric) m.triangularView<Eigen::StrictlyUpper>().setConstant(std::nan(""));
   return m;
 }
