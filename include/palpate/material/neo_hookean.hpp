@@ -7,6 +7,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/detail/deformation.hpp>
+#include <palpate/material/detail/neo_hookean_stress.hpp>
 #include <palpate/material/detail/small_strain.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
@@ -45,9 +46,8 @@ struct NeoHookean {
 
   template <class S>
   PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
-    const Tensor3<S> c = cofactor(f);
     const auto [lambda, mu] = detail::lame<S>(small_strain());
-    return mu * f + ((lambda + mu) * determinant(f, c) - (lambda + S(2) * mu)) * c;
+    return detail::neo_hookean_stress(f, lambda, mu);
   }
 
   Matrix9 tangent(const Tensor3<double>& f) const noexcept;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
+#include <palpate/assembly/detail/tetrahedron_kernels.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/integrator.hpp>
@@ -13,6 +14,8 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/material/detail/small_strain.hpp>
+#include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/quality.hpp>
 
 #include <Eigen/LU>
@@ -27,6 +30,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// cache first, then by node: the order of summation is fixed, independent of the number of threads and of which thread
 /// computes which block. Vectors are double, all dofs, in the order of the mesh; S = float computes in single precision
 /// from displacement differences within a block. No allocation after construction.
+/// With palpate::compiled the force of NeoHookean is computed by kernels for the processor (tetrahedron_kernels), those
+/// of different processors differ by rounding; other materials, and header-only programs, use the program's flags.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class BatchedTetrahedra {
  public:
@@ -82,10 +87,19 @@ class BatchedTetrahedra {
     S* const rows = layout_.cleared(block, rows_);
     const M material = materials_[static_cast<std::size_t>(block.region)];
     detail::VolumeWatch<S, N> watch;
-    layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
-      watch.observe(determinant(f, cofactor(f)), batch.volume);
-      batch.add_force(material.stress(f), rows);
-    });
+    if constexpr (has_kernel) {
+      const auto [lambda, mu] = detail::lame<S>(material.small_strain());
+      S volumes[4 * N];
+      detail::tetrahedron_kernels().neo_hookean({layout_.batches.data() + block.first_batch, block.batch_count,
+                                                 layout_.nodes.data() + block.first_row, block.row_count, u.data(),
+                                                 rows, lambda, mu, volumes});
+      watch.read(volumes);
+    } else {
+      layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
+        watch.observe(determinant(f, cofactor(f)), batch.volume);
+        batch.add_force(material.stress(f), rows);
+      });
+    }
     reports_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
@@ -96,10 +110,12 @@ class BatchedTetrahedra {
  private:
   using Batch = TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Lanes<S, N>>;
+  // by processor, with palpate::compiled
+  static constexpr bool has_kernel = std::is_same_v<M, NeoHookean> && N == any_flags::tetrahedra_at_once<S>;
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<M> materials_;             // by region
-  std::vector<S> rows_;                  // force on every row, four numbers per row
+  std::vector<M> materials_;                // by region
+  std::vector<S> rows_;                     // force on every row, four numbers per row
   std::vector<DeformationReport> reports_;  // by block
   double probe_length_ = 0.0;
 };

@@ -3,6 +3,7 @@
 
 #include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/assembly/detail/element_blocks.hpp>
+#include <palpate/assembly/detail/tetrahedron_batch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
@@ -28,44 +29,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <class E>
 concept LinearTetrahedron = Element<E> && E::nodes == 4 && E::order == 1;
 
-/// N tetrahedra of one region. Lanes without an element have zero gradients and volume, so F = I there.
-template <class S, int N>
-struct TetrahedronBatch {
-  Triple<Lanes<S, N>> gradient[3];  ///< of nodes 1, 2, 3 [1/m]; that of node 0 is minus their sum
-  Lanes<S, N> volume;               ///< at rest [m^3]
-  std::uint16_t row[4][N];          ///< 4 times the index of every node among those of the block
-
-  /// u_a - u_0 for a = 1, 2, 3, from rows of four numbers.
-  PALPATE_ALWAYS_INLINE void differences(const S* u, Triple<Lanes<S, N>> (&d)[3]) const noexcept {
-    const Triple<Lanes<S, N>> u0 = load_rows<S, N>(u, row[0]);
-    for (int a = 0; a < 3; ++a) {
-      const Triple<Lanes<S, N>> ua = load_rows<S, N>(u, row[a + 1]);
-      d[a] = {ua.x - u0.x, ua.y - u0.y, ua.z - u0.z};
-    }
-  }
-  /// Adds forces on nodes 1, 2, 3, and minus their sum on node 0, to rows of four numbers.
-  PALPATE_ALWAYS_INLINE void add_balanced(const Triple<Lanes<S, N>>& f1, const Triple<Lanes<S, N>>& f2,
-                                          const Triple<Lanes<S, N>>& f3, S* force) const noexcept {
-    add_rows(force, row[1], f1);
-    add_rows(force, row[2], f2);
-    add_rows(force, row[3], f3);
-    add_rows(force, row[0], Triple<Lanes<S, N>>{-(f1.x + f2.x + f3.x), -(f1.y + f2.y + f3.y), -(f1.z + f2.z + f3.z)});
-  }
-
-  /// F = I + sum over a = 1, 2, 3 of (u_a - u_0) grad N_a.
-  PALPATE_ALWAYS_INLINE Tensor3<Lanes<S, N>> deformation_gradient(const S* u) const noexcept {
-    Triple<Lanes<S, N>> d[3];
-    differences(u, d);
-    return plus_identity(outer(d[0], gradient[0]) + outer(d[1], gradient[1]) + outer(d[2], gradient[2]),
-                         Lanes<S, N>(S(1)));
-  }
-  /// f_a += V P grad N_a.
-  PALPATE_ALWAYS_INLINE void add_force(const Tensor3<Lanes<S, N>>& stress, S* force) const noexcept {
-    const Tensor3<Lanes<S, N>> p = volume * stress;
-    add_balanced(p * gradient[0], p * gradient[1], p * gradient[2], force);
-  }
-};
-
 /// A part of the mesh whose nodal values fit into the first-level cache.
 struct TetrahedronBlock {
   Index first_batch = 0, batch_count = 0;
@@ -77,7 +40,7 @@ struct TetrahedronBlock {
 /// about two rows per node.
 template <class S, int N>
 struct TetrahedronBatches {
-  static constexpr Index elements_per_block = 512;
+  static constexpr Index elements_per_block = detail::tetrahedra_per_block;
   static constexpr Index most_rows = 4 * elements_per_block;
 
   std::vector<TetrahedronBatch<S, N>> batches;
@@ -141,18 +104,9 @@ struct TetrahedronBatches {
     list_copies(mesh.node_count());
   }
 
-  /// Displacements of a block's nodes minus that of its first node: single precision then keeps the digits of strain
-  /// instead of those of position.
+  /// As detail::load_relative.
   void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
-    const NodeId* const of_row = nodes.data() + block.first_row;
-    const double* const from = u.data();
-    const double* const u0 = from + 3 * Index{of_row[0]};
-    const double origin[3] = {u0[0], u0[1], u0[2]};
-    for (Index r = 0; r < block.row_count; ++r) {
-      const double* const ur = from + 3 * Index{of_row[r]};
-      for (int c = 0; c < 3; ++c) local[4 * r + c] = static_cast<S>(ur[c] - origin[c]);
-      local[4 * r + 3] = S(0);
-    }
+    detail::load_relative(nodes.data() + block.first_row, block.row_count, u.data(), local);
   }
   /// Calls visit(batch, F) for every batch of a block at a displacement.
   template <class Visit>

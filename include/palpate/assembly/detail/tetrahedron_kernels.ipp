@@ -1,0 +1,18 @@
+// Definitions of tetrahedron_kernels.hpp.
+#pragma once
+
+#include <palpate/assembly/detail/tetrahedron_kernels.hpp>
+#include <palpate/assembly/detail/tetrahedron_kernels_here.hpp>
+#include <palpate/core/detail/for_processor.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+PALPATE_INLINE const any_flags::TetrahedronKernels& tetrahedron_kernels() noexcept {
+#if defined(PALPATE_KERNELS_BY_PROCESSOR)
+  return for_processor(tetrahedra_here, any_flags::tetrahedra_avx2, any_flags::tetrahedra_avx512);
+#else
+  return tetrahedra_here;
+#endif
+}
+
+}}}  // namespace palpate::detail

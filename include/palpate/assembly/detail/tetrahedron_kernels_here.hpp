@@ -1,0 +1,38 @@
+// The kernels of batched tetrahedra, compiled with the flags of the including source.
+#pragma once
+
+#include <palpate/assembly/detail/tetrahedron_batch.hpp>
+#include <palpate/assembly/detail/tetrahedron_kernel_types.hpp>
+#include <palpate/material/detail/neo_hookean_stress.hpp>
+
+#include <type_traits>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+static_assert(std::is_same_v<NodeId, std::int32_t>);
+
+template <class S>
+inline void add_neo_hookean_block(const any_flags::TetrahedronJob<S>& job) noexcept {
+  constexpr int lanes = any_flags::tetrahedra_at_once<S>;
+  const auto* const batches = static_cast<const TetrahedronBatch<S, lanes>*>(job.batches);
+  const S lambda = job.lambda, mu = job.mu;
+  S* const rows = job.rows;
+  alignas(64) S local[4 * 4 * tetrahedra_per_block];
+  load_relative(job.nodes, job.row_count, job.displacement, local);
+  VolumeLanes<S, lanes> volumes;
+  for (Index b = 0; b < job.batch_count; ++b) {
+    const TetrahedronBatch<S, lanes>& batch = batches[b];
+    const Tensor3<Lanes<S, lanes>> f = batch.deformation_gradient(local);
+    volumes.observe(determinant(f, cofactor(f)), batch.volume);
+    batch.add_force(neo_hookean_stress(f, lambda, mu), rows);
+  }
+  volumes.smallest.store(job.volumes);
+  volumes.batch.store(job.volumes + lanes);
+  volumes.upright.store(job.volumes + 2 * lanes);
+  volumes.broken.store(job.volumes + 3 * lanes);
+}
+
+inline constexpr any_flags::TetrahedronKernels tetrahedra_here{add_neo_hookean_block<double>,
+                                                               add_neo_hookean_block<float>};
+
+}}}  // namespace palpate::detail
