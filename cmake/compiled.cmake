@@ -65,9 +65,9 @@ foreach(room IN LISTS rooms)
 endforeach()
 
 # The dense kernels of the sparse solver, and those of explicit neo-Hookean forces, are compiled for other processors
-# too, and chosen at run time (linear/detail/processor_kernels.hpp, assembly/detail/tetrahedron_kernels.hpp). At least -O2, so that functions of Eigen and the standard library are inlined:
-# the linker could choose a copy of one that is compiled for AVX for the whole program. Not on Windows, where g++ does
-# not align the stack for AVX.
+# too, and chosen at run time (linear/detail/processor_kernels.hpp, assembly/detail/tetrahedron_kernels.hpp). At least
+# -O2, so that functions of Eigen and the standard library are inlined: the linker could choose a copy of one that is
+# compiled for AVX for the whole program. Not on Windows, where g++ does not align the stack for AVX.
 set(kernel_sources "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32
    AND NOT CMAKE_OSX_ARCHITECTURES)

@@ -157,6 +157,7 @@ std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const Spars
   constexpr double shared_flops = 3e7;  // as in ParallelFronts
   const detail::FrontTree& tree = analysis.tree();
   detail::BigArray factor(tree.factor_size + 64), updates(tree.workspace_size + 64);
+  for (detail::BigArray* a : {&factor, &updates}) std::fill_n(a->data(), a->size(), 0.0);  // page faults do not count
   detail::FrontSystem system(tree, factor.data(), SparseCholesky::pivot_threshold);
   system.take(lower);
   detail::FrontWork work(tree, analysis.pack_size());

@@ -30,8 +30,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// cache first, then by node: the order of summation is fixed, independent of the number of threads and of which thread
 /// computes which block. Vectors are double, all dofs, in the order of the mesh; S = float computes in single precision
 /// from displacement differences within a block. No allocation after construction.
-/// With palpate::compiled the force of NeoHookean is computed by kernels for the processor (tetrahedron_kernels), those
-/// of different processors differ by rounding; other materials, and header-only programs, use the program's flags.
+/// With palpate::compiled, kernels for the processor (tetrahedron_kernels) compute the force of NeoHookean; those of
+/// different processors differ by rounding. Other materials, and header-only programs, use the program's flags.
 template <HyperelasticMaterial M, class S = double, int N = 64 / sizeof(S)>
 class BatchedTetrahedra {
  public:
