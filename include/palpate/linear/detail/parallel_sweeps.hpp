@@ -59,7 +59,6 @@ class ParallelSweeps {
 
   const FrontTree& tree_;
   const double* factor_;
-  Index count_;
   double* values_;
   const SetupThreads& threads_;
   FrontTasks division_;

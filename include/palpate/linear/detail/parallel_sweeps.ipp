@@ -17,7 +17,6 @@ PALPATE_INLINE ParallelSweeps::ParallelSweeps(const FrontTree& tree, const doubl
                                               const SetupThreads& threads)
     : tree_(tree),
       factor_(factor),
-      count_(count),
       values_(values),
       threads_(threads),
       division_(divide_fronts(tree, count)),
