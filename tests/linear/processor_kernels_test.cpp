@@ -129,3 +129,21 @@ TEST_CASE("The kernels of every processor substitute blocks of right-hand sides 
       }
   }
 }
+
+TEST_CASE("The kernels of every processor add columns of floats in double") {
+  constexpr Index count = any_flags::float_columns_at_once;
+  testing::Random random(10);
+  for (const Index rows : {0, 1, 15, 16, 37, 900}) {
+    const Eigen::MatrixXf matrix = random_entries(random, rows, count).cast<float>();
+    const MatrixX loads = random_entries(random, count, 1), start = random_entries(random, rows, 1);
+    const VectorX expected = start + matrix.cast<double>() * loads;
+    std::array<const float*, count> columns{};
+    for (Index k = 0; k < count; ++k) columns[static_cast<std::size_t>(k)] = matrix.data() + k * rows;
+    for (const auto& [name, kernels] : executable_kernels()) {
+      INFO(name << ", " << rows << " rows");
+      VectorX x = start;
+      kernels->add_float_columns(columns.data(), loads.data(), rows, x.data());
+      CHECK((x - expected).norm() <= 1e-15 * static_cast<double>(count) * expected.norm());
+    }
+  }
+}

@@ -3,6 +3,7 @@
 
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/detail/dense_io.hpp>
+#include <palpate/linear/detail/processor_kernels.hpp>
 #include <palpate/linear/detail/spd_inverse.hpp>
 
 #include <algorithm>
@@ -13,8 +14,7 @@ static_assert(LinearSolver<DenseInverse<float>>);
 
 namespace detail {
 
-/// x += columns of an n x n matrix times their loads. A plain loop: compilers vectorise it together with the
-/// conversion of precision, whereas Eigen's casts between scalar types of different width are not vectorised.
+/// x += columns of an n x n matrix times their loads. A plain loop, which compilers vectorise.
 template <int N, class Scalar>
 void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
   const Scalar* column[N];
@@ -28,6 +28,21 @@ void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, con
     for (int k = 0; k < N; ++k) sum += load[k] * static_cast<double>(column[k][i]);
     x[i] = sum;
   }
+}
+
+/// The same for as many columns as are done in one pass. In single precision by a kernel for the processor.
+inline constexpr int loaded_at_once = any_flags::float_columns_at_once;
+inline void add_pass(const double* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
+  add_loaded_columns<loaded_at_once>(matrix, n, columns, b, x);
+}
+inline void add_pass(const float* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
+  const float* column[loaded_at_once];
+  double load[loaded_at_once];
+  for (int k = 0; k < loaded_at_once; ++k) {
+    column[k] = matrix + columns[k] * n;
+    load[k] = b[columns[k]];
+  }
+  processor_kernels().add_float_columns(column, load, n, x);
 }
 
 }  // namespace detail
@@ -58,7 +73,7 @@ DenseInverse<Scalar> DenseInverse<Scalar>::read(BinaryReader& in, Index size, co
 
 template <std::floating_point Scalar>
 SolveReport DenseInverse<Scalar>::solve_into(const VectorX& b, VectorX& x) noexcept {
-  constexpr int most = 8;  // columns in one pass: x is loaded and stored once for all of them
+  constexpr int most = detail::loaded_at_once;
   const Scalar* const matrix = inverse_ ? inverse_->data() : nullptr;
   const Index n = size();
   std::fill_n(x.data(), x.size(), 0.0);
@@ -68,7 +83,7 @@ SolveReport DenseInverse<Scalar>::solve_into(const VectorX& b, VectorX& x) noexc
     if (b.data()[j] == 0.0) continue;
     loaded[count++] = j;
     if (count < most) continue;
-    detail::add_loaded_columns<most>(matrix, n, loaded, b.data(), x.data());
+    detail::add_pass(matrix, n, loaded, b.data(), x.data());
     count = 0;
   }
   for (int k = 0; k < count; ++k) detail::add_loaded_columns<1>(matrix, n, loaded + k, b.data(), x.data());

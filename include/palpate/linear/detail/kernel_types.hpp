@@ -52,12 +52,18 @@ struct ProductJob {
 /// Substitution with the pivot columns `l` of a front, of the given height, for a block of right-hand sides x.
 using BlockSubstitution = void (*)(const double* l, std::int64_t height, std::int64_t columns, double* x) noexcept;
 
+/// Columns in one pass: the sum is loaded and stored once for all of them.
+inline constexpr int float_columns_at_once = 8;
+/// x += column k times load k, in double, for eight columns of n rows.
+using FloatColumns = void (*)(const float* const* columns, const double* loads, std::int64_t n, double* x) noexcept;
+
 /// Kernels compiled with the same flags.
 struct Kernels {
   void (*factor_front)(const FrontJob&) noexcept;
   void (*add_product)(const ProductJob&) noexcept;
   std::int64_t packet_size;                            ///< doubles per register
   std::array<BlockSubstitution, 3> forward, backward;  ///< for blocks of one, two and three packets
+  FloatColumns add_float_columns;
 };
 
 // Defined in palpate::compiled, each in a source of its own (cmake/compiled.cmake).

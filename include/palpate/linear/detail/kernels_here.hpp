@@ -1,6 +1,7 @@
-// The dense kernels of the sparse solver, compiled with the flags of the including source.
+// The dense kernels of the solvers, compiled with the flags of the including source.
 #pragma once
 
+#include <palpate/linear/detail/float_columns.hpp>
 #include <palpate/linear/detail/front_block_substitution.hpp>
 #include <palpate/linear/detail/front_kernels.hpp>
 #include <palpate/linear/detail/kernel_types.hpp>
@@ -21,6 +22,7 @@ inline constexpr any_flags::Kernels kernels_here{factor_front,
                                                  add_product_packed,
                                                  packet_size,
                                                  {forward_block<1>, forward_block<2>, forward_block<3>},
-                                                 {backward_block<1>, backward_block<2>, backward_block<3>}};
+                                                 {backward_block<1>, backward_block<2>, backward_block<3>},
+                                                 add_float_columns};
 
 }}}  // namespace palpate::detail
