@@ -5,23 +5,58 @@
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/linear/condition.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 #include <palpate/model/cache/detail/prepared_cache.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
 #include <palpate/model/detail/stage_timer.hpp>
 
+#include <algorithm>
+#include <exception>
+#include <limits>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// A system as a LinearSolver that solves on the threads of a set-up.
-struct SolvesOnThreads {
-  AnyStaticSystem& system;
-  const SetupThreads& threads;
+/// A system as a LinearSolver that solves on the threads of a set-up and reports progress before every solve. After a
+/// cancellation it only returns NaN, which ends an estimate; then `require_going_on` throws.
+class CheckingSolver {
+ public:
+  CheckingSolver(AnyStaticSystem& system, const SetupLimits& limits) : system_(system), limits_(limits) {}
 
-  Index size() const noexcept { return system.size(); }
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return system.solve_into(b, x, threads); }
+  Index size() const noexcept { return system_.size(); }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
+    if (goes_on()) return system_.solve_into(b, x, limits_.threads);
+    fill(x, std::numeric_limits<double>::quiet_NaN());
+    return {false, 0, std::numeric_limits<double>::quiet_NaN()};
+  }
+  /// Throws what the report of progress has thrown.
+  void require_going_on() const {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    if (stopped_) std::rethrow_exception(stopped_);
+#endif
+  }
+
+ private:
+  bool goes_on() noexcept {
+    constexpr double usual = 8.0;  // solves of all checks
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    try {
+#endif
+      if (!stopped_) limits_.advance("checks", std::min(0.9, solves_++ / usual));
+#if defined(PALPATE_HAS_EXCEPTIONS)
+    } catch (...) {
+      stopped_ = std::current_exception();
+    }
+#endif
+    return !stopped_;
+  }
+
+  AnyStaticSystem& system_;
+  const SetupLimits& limits_;
+  std::exception_ptr stopped_;
+  int solves_ = 0;
 };
 
 }  // namespace detail
@@ -62,8 +97,9 @@ PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& 
   cache.payload().value(condition);
   std::optional<AnyStaticSystem> system(recipe.read(cache.payload(), *stiffness.matrix(), conditions, dofs, limits));
   if (!cache.verify()) return std::nullopt;
-  detail::SolvesOnThreads solver{*system, limits.threads};
+  detail::CheckingSolver solver(*system, limits);
   const double error = probe_error(FreeStiffness(stiffness.view(), conditions), solver);
+  solver.require_going_on();
   if (!(error <= refused_probe_error)) {
     cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
     return std::nullopt;
@@ -80,7 +116,6 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
     return recipe.make(stiffness, conditions, dofs, limits);
   }();
   const StageTimer timer(report, "checks");
-  limits.advance("checks", 0.0);
   const FreeStiffness free(stiffness.view(), conditions);
   estimate_accuracy(free, system, report);
   require_softest_motion(free, system, report);
@@ -90,19 +125,21 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
 
 PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system,
                                                     SetupReport& report) const {
-  detail::SolvesOnThreads solver{system, limits.threads};
+  detail::CheckingSolver solver(system, limits);
   report.probe_error = probe_error(free, solver);
   report.condition_estimate = recipe.iterative
                                   ? condition_by_iteration(free, solver)
                                   : free_norm(*stiffness.matrix(), conditions) * inverse_norm_estimate(solver);
+  solver.require_going_on();
 }
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
   const bool doubtful = report.probe_error > flagged_probe_error || is_ill_conditioned(report);
   if (!doubtful) return;
-  detail::SolvesOnThreads solver{system, limits.threads};
+  detail::CheckingSolver solver(system, limits);
   const SoftestMotion softest = probe_softest_motion(free, solver);
+  solver.require_going_on();
   if (!(softest.error > refused_softest_error)) return;
   SetupProblem p;
   p.kind = SetupErrorKind::ill_conditioned;
