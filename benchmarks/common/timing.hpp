@@ -92,6 +92,18 @@ inline double process_bytes(const char* key) {
   return unknown;
 }
 
+#if defined(__GLIBC__)
+/// Settings of the allocator as it makes them by itself once blocks of 32 MB were freed; smaller ones are then used
+/// again, without page faults. Any setting switches this adaptation off, see mallopt(3).
+inline void reset_allocator() noexcept {
+  constexpr int most_maps = 65536, largest_kept = 32 << 20;
+  mallopt(M_MMAP_MAX, most_maps);
+  mallopt(M_MMAP_THRESHOLD, largest_kept);
+  mallopt(M_TRIM_THRESHOLD, 2 * largest_kept);
+  malloc_trim(0);
+}
+#endif
+
 /// While it exists, freed memory stays in the process (glibc): on virtual machines the system may take as long to
 /// provide the pages of a factor as the factorisation.
 class KeepFreedMemory {
@@ -102,10 +114,7 @@ class KeepFreedMemory {
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   }
   ~KeepFreedMemory() {
-    constexpr int default_maps = 65536, default_trim = 128 * 1024;
-    mallopt(M_MMAP_MAX, default_maps);
-    mallopt(M_TRIM_THRESHOLD, default_trim);
-    malloc_trim(0);
+    reset_allocator();
   }
 #else
   KeepFreedMemory() = default;
@@ -127,7 +136,11 @@ double peak_growth(Work&& work) {
   std::ofstream("/proc/self/clear_refs") << "5";  // resets the recorded peak
   const double before = process_bytes("VmRSS");
   work();
-  return process_bytes("VmHWM") - before;
+  const double growth = process_bytes("VmHWM") - before;
+#if defined(__GLIBC__)
+  reset_allocator();
+#endif
+  return growth;
 }
 
 }  // namespace bench
