@@ -64,7 +64,7 @@ foreach(room IN LISTS rooms)
   palpate_source(${room} ${taken})
 endforeach()
 
-# The dense kernels of the sparse solver, and those of explicit neo-Hookean forces, are compiled for other processors
+# The dense kernels of the solvers, and those of explicit neo-Hookean forces, are compiled for other processors
 # too, and chosen at run time (linear/detail/processor_kernels.hpp, assembly/detail/tetrahedron_kernels.hpp). At least
 # -O2, so that functions of Eigen and the standard library are inlined: the linker could choose a copy of one that is
 # compiled for AVX for the whole program. Not on Windows, where g++ does not align the stack for AVX.

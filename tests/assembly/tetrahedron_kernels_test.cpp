@@ -9,24 +9,21 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "kernels_of_processors.hpp"
 
 using namespace palpate;
 using any_flags::TetrahedronKernels;
 
 namespace {
 
-using NamedKernels = std::pair<const char*, const TetrahedronKernels*>;
-
 /// Those that this processor can execute.
-std::vector<NamedKernels> executable_kernels() {
-  std::vector<NamedKernels> all{{"chosen", &detail::tetrahedron_kernels()}, {"of the test", &detail::tetrahedra_here}};
+test::NamedKernels<TetrahedronKernels> executable_kernels() {
 #if defined(PALPATE_KERNELS_BY_PROCESSOR)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    all.emplace_back("avx2", &any_flags::tetrahedra_avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    all.emplace_back("avx512", &any_flags::tetrahedra_avx512);
+  return test::executable(detail::tetrahedron_kernels(), detail::tetrahedra_here, &any_flags::tetrahedra_avx2,
+                          &any_flags::tetrahedra_avx512);
+#else
+  return test::executable<TetrahedronKernels>(detail::tetrahedron_kernels(), detail::tetrahedra_here, nullptr, nullptr);
 #endif
-  return all;
 }
 
 /// Batches whose lanes share nodes; the last lane is empty.

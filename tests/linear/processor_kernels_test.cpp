@@ -10,24 +10,21 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "kernels_of_processors.hpp"
 
 using namespace palpate;
 using any_flags::Kernels;
 
 namespace {
 
-using NamedKernels = std::pair<const char*, const Kernels*>;
-
 /// Those that this processor can execute.
-std::vector<NamedKernels> executable_kernels() {
-  std::vector<NamedKernels> all{{"chosen", &detail::processor_kernels()}, {"of the test", &detail::kernels_here}};
+test::NamedKernels<Kernels> executable_kernels() {
 #if defined(PALPATE_KERNELS_BY_PROCESSOR)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    all.emplace_back("avx2", &any_flags::kernels_avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    all.emplace_back("avx512", &any_flags::kernels_avx512);
+  return test::executable(detail::processor_kernels(), detail::kernels_here, &any_flags::kernels_avx2,
+                          &any_flags::kernels_avx512);
+#else
+  return test::executable<Kernels>(detail::processor_kernels(), detail::kernels_here, nullptr, nullptr);
 #endif
-  return all;
 }
 
 MatrixX random_entries(testing::Random& random, Index rows, Index columns) {
@@ -131,7 +128,7 @@ TEST_CASE("The kernels of every processor substitute blocks of right-hand sides 
 }
 
 TEST_CASE("The kernels of every processor add columns of floats in double") {
-  constexpr Index count = any_flags::float_columns_at_once;
+  constexpr Index count = any_flags::columns_at_once;
   testing::Random random(10);
   for (const Index rows : {0, 1, 15, 16, 37, 900}) {
     const Eigen::MatrixXf matrix = random_entries(random, rows, count).cast<float>();

@@ -23,7 +23,8 @@ concept SpdOperator = requires(const Op& op, const VectorX& x, VectorX& y) {
 };
 
 /// A prepared solver: `solve_into` writes x with K x = b. It never allocates once prepared, and must not be called
-/// from two threads simultaneously (it owns its workspace). Laws: testing/solver_laws.hpp.
+/// from two threads simultaneously (it owns its workspace). A set-up calls `solve_into(b, x, threads)` where a solver
+/// has it: the same on several SetupThreads, which may allocate. Laws: testing/solver_laws.hpp.
 template <class S>
 concept LinearSolver = requires(S& solver, const VectorX& b, VectorX& x) {
   { solver.size() } -> std::convertible_to<Index>;

@@ -31,14 +31,13 @@ void add_loaded_columns(const Scalar* matrix, Index n, const Index* columns, con
 }
 
 /// The same for as many columns as are done in one pass. In single precision by a kernel for the processor.
-inline constexpr int loaded_at_once = any_flags::float_columns_at_once;
 inline void add_pass(const double* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
-  add_loaded_columns<loaded_at_once>(matrix, n, columns, b, x);
+  add_loaded_columns<any_flags::columns_at_once>(matrix, n, columns, b, x);
 }
 inline void add_pass(const float* matrix, Index n, const Index* columns, const double* b, double* x) noexcept {
-  const float* column[loaded_at_once];
-  double load[loaded_at_once];
-  for (int k = 0; k < loaded_at_once; ++k) {
+  const float* column[any_flags::columns_at_once];
+  double load[any_flags::columns_at_once];
+  for (int k = 0; k < any_flags::columns_at_once; ++k) {
     column[k] = matrix + columns[k] * n;
     load[k] = b[columns[k]];
   }
@@ -73,7 +72,7 @@ DenseInverse<Scalar> DenseInverse<Scalar>::read(BinaryReader& in, Index size, co
 
 template <std::floating_point Scalar>
 SolveReport DenseInverse<Scalar>::solve_into(const VectorX& b, VectorX& x) noexcept {
-  constexpr int most = detail::loaded_at_once;
+  constexpr int most = any_flags::columns_at_once;
   const Scalar* const matrix = inverse_ ? inverse_->data() : nullptr;
   const Index n = size();
   std::fill_n(x.data(), x.size(), 0.0);

@@ -11,6 +11,13 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 static_assert(std::is_same_v<NodeId, std::int32_t>);
 
+/// The library and its kernels for other processors are compiled with different flags, and share batches.
+template <class S, int N = any_flags::tetrahedra_at_once<S>>
+inline constexpr bool same_for_all_flags = sizeof(TetrahedronBatch<S, N>) ==
+                                               (9 + 1) * N * sizeof(S) + 4 * N * sizeof(std::uint16_t) &&
+                                           alignof(TetrahedronBatch<S, N>) == N * sizeof(S);
+static_assert(same_for_all_flags<double> && same_for_all_flags<float>);
+
 template <class S>
 inline void add_neo_hookean_block(const any_flags::TetrahedronJob<S>& job) noexcept {
   constexpr int lanes = any_flags::tetrahedra_at_once<S>;

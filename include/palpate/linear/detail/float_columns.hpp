@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-inline constexpr int columns_at_once = any_flags::float_columns_at_once;
+using any_flags::columns_at_once;
 
 #if defined(__GNUC__)
 
@@ -18,10 +18,12 @@ inline constexpr int converted_at_once = 2 * packet_size;
 using FloatLanes = float __attribute__((vector_size(converted_at_once * sizeof(float))));
 using DoubleLanes = double __attribute__((vector_size(converted_at_once * sizeof(double))));
 
-inline DoubleLanes converted(const float* from) noexcept {
+/// sum += load times some rows of a column. By reference: lanes wider than a register have no fixed way of being
+/// returned.
+inline void add_converted(const float* column, double load, DoubleLanes& sum) noexcept {
   FloatLanes lanes;
-  std::memcpy(&lanes, from, sizeof lanes);
-  return __builtin_convertvector(lanes, DoubleLanes);
+  std::memcpy(&lanes, column, sizeof lanes);
+  sum += __builtin_convertvector(lanes, DoubleLanes) * load;
 }
 
 /// Returns the number of rows that are done. The columns are written out, because kernels are compiled with -O2, which
@@ -35,7 +37,7 @@ std::int64_t add_float_lanes(const float* const* columns, const double* loads, s
   for (; i + converted_at_once <= n; i += converted_at_once) {
     DoubleLanes sum;
     std::memcpy(&sum, x + i, sizeof sum);
-    ((sum += converted(column[K] + i) * load[K]), ...);
+    (add_converted(column[K] + i, load[K], sum), ...);
     std::memcpy(x + i, &sum, sizeof sum);
   }
   return i;

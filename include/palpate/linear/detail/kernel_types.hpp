@@ -53,7 +53,7 @@ struct ProductJob {
 using BlockSubstitution = void (*)(const double* l, std::int64_t height, std::int64_t columns, double* x) noexcept;
 
 /// Columns in one pass: the sum is loaded and stored once for all of them.
-inline constexpr int float_columns_at_once = 8;
+inline constexpr int columns_at_once = 8;
 /// x += column k times load k, in double, for eight columns of n rows.
 using FloatColumns = void (*)(const float* const* columns, const double* loads, std::int64_t n, double* x) noexcept;
 

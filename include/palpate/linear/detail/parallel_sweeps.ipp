@@ -9,8 +9,8 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE bool ParallelSweeps::are_worthwhile(const FrontTree& tree, const SetupThreads& threads) noexcept {
-  constexpr Index factor_of_thread = Index{1} << 20;  // [doubles]: starting a thread takes as long as reading 1 MB
-  return threads.threads() > 1 && tree.factor_size > factor_of_thread;
+  constexpr Index worth_threads = Index{1} << 20;  // [doubles], 8 MB; a thread starts in the time of reading 1 MB
+  return threads.threads() > 1 && tree.factor_size > worth_threads;
 }
 
 PALPATE_INLINE ParallelSweeps::ParallelSweeps(const FrontTree& tree, const double* factor, Index count, double* values,

@@ -1,4 +1,4 @@
-// The dense kernels of the sparse solver, chosen for the processor at run time.
+// The dense kernels of the solvers, chosen for the processor at run time.
 #pragma once
 
 #include <palpate/linear/detail/kernel_types.hpp>
