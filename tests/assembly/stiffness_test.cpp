@@ -8,6 +8,11 @@
 #include "element/user_elements.hpp"
 #include "local/closed_form.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
 using namespace test;
 
 namespace {
@@ -147,6 +152,49 @@ TEST_CASE("an element whose stiffness overflows is refused with its id", "[assem
   };
   check(refusal([&] { assemble_stiffness<Tet4>(body, {}); }));
   check(refusal([&] { MatrixFreeStiffness<Tet4>(body, {}); }));
+}
+
+TEST_CASE("assembly by rows gives the same bits on any number of threads", "[assembly][threads]") {
+  Mesh<Tet4> mesh = box_tet4({1, 1, 1}, {26, 26, 26});
+  mesh.region_names = {"soft", "stiff"};
+  for (Index e = 0; e < mesh.element_count(); ++e) mesh.regions.push_back(static_cast<int>(e % 2));
+  std::mt19937 random(7);
+  std::vector<NodeId> number(mesh.positions.size());  // irregular, as a mesh generator leaves it
+  std::iota(number.begin(), number.end(), 0);
+  std::shuffle(number.begin(), number.end(), random);
+  const std::vector<Vector3> positions = mesh.positions;
+  for (std::size_t i = 0; i < number.size(); ++i) mesh.positions[static_cast<std::size_t>(number[i])] = positions[i];
+  for (auto& element : mesh.elements)
+    for (NodeId& i : element) i = number[static_cast<std::size_t>(i)];
+  Body<Tet4> body = body_of(mesh, {liver, {2e5, 0.1, 0.0}});
+  REQUIRE(body.mesh.node_count() > 2 * 8192);  // more than one group of rows
+
+  const BlockMatrix one = assemble_stiffness<Tet4>(body, {});
+  const MatrixFreeStiffness<Tet4> by_elements(body, {});
+  VectorX x(one.size()), y(one.size()), expected(one.size());
+  for (Index i = 0; i < x.size(); ++i) x[i] = std::sin(static_cast<double>(i));
+  one.apply(x, y);
+  by_elements.apply(x, expected);
+  CHECK((y - expected).norm() <= 1e-13 * expected.norm());
+  for (const int threads : {2, 3, 7}) {
+    SetupLimits limits;
+    limits.threads = threads;
+    const BlockMatrix several = assemble_stiffness<Tet4>(body, limits);
+    bool same = true;
+    for (Index p = 0; p < static_cast<Index>(one.pattern().column.size()); ++p)
+      same = same && several.block(p) == one.block(p);
+    CHECK(same);
+  }
+
+  for (const NodeId e : {70000, 20000, 60000})  // the first is named, whatever thread finds it
+    std::swap(body.mesh.elements[static_cast<std::size_t>(e)][0], body.mesh.elements[static_cast<std::size_t>(e)][1]);
+  for (const int threads : {1, 3}) {
+    SetupLimits limits;
+    limits.threads = threads;
+    const SetupProblem p = refusal([&] { assemble_stiffness<Tet4>(body, limits); });
+    CHECK(p.kind == SetupErrorKind::inverted_element);
+    CHECK(p.ids == std::vector<std::int64_t>{20000});
+  }
 }
 
 TEST_CASE("assembly can be cancelled", "[assembly]") {

@@ -7,24 +7,32 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE BlockPattern block_pattern(const MeshRef& mesh, const NodeElements& around) {
   const Index n = mesh.node_count;
+  const int per_element = mesh.element.nodes;
   BlockPattern pattern;
   pattern.row_start.reserve(static_cast<std::size_t>(n) + 1);
   pattern.column.reserve(8 * static_cast<std::size_t>(n));
   pattern.row_start.push_back(0);
-  std::vector<NodeId> seen_by(static_cast<std::size_t>(n), -1);  // the last row that contains the column
+  std::vector<NodeId> last_row(static_cast<std::size_t>(n), -1);  // the last row whose elements contain the node
   for (Index i = 0; i < n; ++i) {
-    const auto begin = static_cast<std::ptrdiff_t>(pattern.column.size());
-    for (const NodeId e : around.of(i)) {
+    const auto row = static_cast<NodeId>(i);
+    const auto elements = around.of(i);
+    const std::size_t begin = pattern.column.size();
+    pattern.column.resize(begin + elements.size() * static_cast<std::size_t>(per_element) + 1);
+    NodeId* const first = pattern.column.data() + begin;
+    NodeId* end = first;
+    for (const NodeId e : elements) {
       const NodeId* nodes = mesh.nodes_of(e);
-      for (int a = 0; a < mesh.element.nodes; ++a) {
+      for (int a = 0; a < per_element; ++a) {  // no branches: they would be mispredicted
         const NodeId j = nodes[a];
-        if (j >= i || seen_by[static_cast<std::size_t>(j)] == i) continue;
-        seen_by[static_cast<std::size_t>(j)] = static_cast<NodeId>(i);
-        pattern.column.push_back(j);
+        NodeId& last = last_row[static_cast<std::size_t>(j)];
+        *end = j;
+        end += static_cast<int>(j < row) & static_cast<int>(last != row);
+        last = row;
       }
     }
-    std::sort(pattern.column.begin() + begin, pattern.column.end());
-    pattern.column.push_back(static_cast<NodeId>(i));
+    std::sort(first, end);
+    *end = row;
+    pattern.column.resize(begin + static_cast<std::size_t>(end - first) + 1);
     pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
   }
   return pattern;
