@@ -11,6 +11,8 @@
 
 #include <Eigen/SparseCholesky>
 
+#include <unistd.h>
+
 #include <array>
 #include <chrono>
 #include <cstring>
@@ -61,10 +63,18 @@ void inform(Session& session, std::string what, std::string figure, std::string 
                     .error = ""});
 }
 
+/// Times of the fronts on two threads, each with a copy, if the memory is sufficient; otherwise on one.
+std::vector<bench::FrontTime> times_of_two(const CholeskyAnalysis& analysis, const SparseMatrix& lower, bool& two) {
+  const double pages = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  two = 2.0 * analysis.peak_bytes(1) < 0.7 * pages;
+  return bench::time_fronts(analysis, lower, two ? 2 : 1);
+}
+
 /// What more threads would give, and what limits them; for two threads compared with the measured time.
 void predict_threads(Session& session, const CholeskyAnalysis& analysis, const bench::System& system, double measured,
                      const std::string& where) {
-  const std::vector<bench::FrontTime> times = bench::time_fronts(analysis, system.lower);
+  bool copies = false;
+  const std::vector<bench::FrontTime> times = times_of_two(analysis, system.lower, copies);
   const double one = bench::predict(analysis, times, 1).seconds;
   const double two = bench::predict(analysis, times, 2).seconds;
   session.rows.add({.target = "v",

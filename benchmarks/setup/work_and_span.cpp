@@ -1,11 +1,13 @@
 #include "work_and_span.hpp"
 
+#include <palpate/core/executor.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/linear/detail/front_tasks.hpp>
 #include <palpate/linear/detail/front_work.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
+#include <barrier>
 #include <functional>
 #include <queue>
 
@@ -151,9 +153,8 @@ class Simulation {
   Predicted predicted_;
 };
 
-}  // namespace
-
-std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const SparseLower& lower) {
+/// Waits for the others before the first front.
+std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseLower& lower, std::barrier<>& together) {
   constexpr double shared_flops = 3e7;  // as in ParallelFronts
   const detail::FrontTree& tree = analysis.tree();
   detail::BigArray factor(tree.factor_size + 64), updates(tree.workspace_size + 64);
@@ -162,6 +163,7 @@ std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const Spars
   system.take(lower);
   detail::FrontWork work(tree, analysis.pack_size());
   std::vector<FrontTime> times;
+  together.arrive_and_wait();
   for (Index f = 0; f < tree.fronts.size(); ++f) {
     system.updates[f] = updates.data() + tree.fronts[f].update;
     TimedTeam team;
@@ -171,6 +173,23 @@ std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const Spars
     times.push_back(team.time);
   }
   return times;
+}
+
+}  // namespace
+
+std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const SparseLower& lower, int threads) {
+  std::vector<std::vector<FrontTime>> of_thread(static_cast<std::size_t>(threads));
+  std::barrier together(threads);
+  StartedThreads(threads).run(
+      threads, [&](int t) { of_thread[static_cast<std::size_t>(t)] = time_copy(analysis, lower, together); });
+  std::vector<FrontTime> mean(of_thread.front().size());
+  for (const std::vector<FrontTime>& times : of_thread)
+    for (std::size_t f = 0; f < mean.size(); ++f) {
+      mean[f].serial += times[f].serial / threads;
+      mean[f].shared += times[f].shared / threads;
+      mean[f].longest += times[f].longest / threads;
+    }
+  return mean;
 }
 
 Predicted predict(const CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads) {

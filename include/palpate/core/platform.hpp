@@ -223,6 +223,10 @@ inline void set_float_mode(std::uint64_t mode) noexcept {
   _mm_setcsr(static_cast<unsigned>(mode));
 }
 inline constexpr std::uint64_t flush_denormals = 0x8040;  // FTZ and DAZ
+/// For loops that wait: lets the other thread of the core work.
+inline void pause() noexcept {
+  _mm_pause();
+}
 #elif defined(__aarch64__) && !defined(_MSC_VER)
 inline std::uint64_t float_mode() noexcept {
   std::uint64_t mode = 0;
@@ -233,12 +237,16 @@ inline void set_float_mode(std::uint64_t mode) noexcept {
   asm volatile("msr fpcr, %0" : : "r"(mode));
 }
 inline constexpr std::uint64_t flush_denormals = std::uint64_t{1} << 24;
+inline void pause() noexcept {
+  asm volatile("yield");
+}
 #else
 inline std::uint64_t float_mode() noexcept {
   return 0;
 }
 inline void set_float_mode(std::uint64_t) noexcept {}
 inline constexpr std::uint64_t flush_denormals = 0;
+inline void pause() noexcept {}
 #endif
 
 }}}  // namespace palpate::platform

@@ -76,9 +76,12 @@ inline void subtract_packed(double* c, const LowerPanels& shape, Steps a, Index 
     const Index stride = shape.stride(p);
     double* const panel = c + shape.offset(p) - begin;
     for (Index j = begin; j < end && j < bottom; j += tile_columns)
-      for (Index r = std::max(top, j / tile_rows * tile_rows); r < bottom; r += tile_rows)
+      for (Index r = std::max(top, j / tile_rows * tile_rows); r < bottom; r += tile_rows) {
+        double* const tile = panel + r + (j - begin) * stride;
+        prefetch_tile(tile, stride, end - j);
         subtract_tile<Mode>((shape.height - r) / packet_size, steps, {rows + r * steps, tile_rows},
-                            {columns + j * steps, tile_columns}, panel + r + (j - begin) * stride, stride, end - j);
+                            {columns + j * steps, tile_columns}, tile, stride, end - j);
+      }
   });
 }
 

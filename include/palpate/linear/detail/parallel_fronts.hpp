@@ -1,13 +1,13 @@
 // A multifrontal factorisation on the threads of an executor.
 #pragma once
 
+#include <palpate/core/detail/change_signal.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/linear/detail/front_tasks.hpp>
 #include <palpate/linear/detail/front_work.hpp>
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -71,7 +71,7 @@ class ParallelFronts {
   std::atomic<bool> stopped_{false};
 
   std::mutex mutex_;  // of all that follows
-  std::condition_variable changed_;
+  ChangeSignal changed_;
   std::exception_ptr problem_;
   std::vector<Index> ready_;       // a heap, first task on top
   IndexedVector<NodeId> waiting_;  // per task: children that are not done

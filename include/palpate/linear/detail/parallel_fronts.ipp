@@ -28,8 +28,8 @@ class ParallelFronts::Team final : public FrontTeam {
     if (!alone) {
       const std::scoped_lock lock(all_.mutex_);
       all_.shared_.push_back(&shared);
+      all_.changed_.notify_all();
     }
-    if (!alone) all_.changed_.notify_all();
     all_.take_pieces(shared);
     if (alone) return;
     std::unique_lock lock(all_.mutex_);

@@ -1,11 +1,11 @@
 // Forward and backward substitution over all fronts on the threads of an executor.
 #pragma once
 
+#include <palpate/core/detail/change_signal.hpp>
 #include <palpate/core/executor.hpp>
 #include <palpate/linear/detail/big_array.hpp>
 #include <palpate/linear/detail/front_tasks.hpp>
 
-#include <condition_variable>
 #include <mutex>
 #include <vector>
 
@@ -69,7 +69,7 @@ class ParallelSweeps {
   Index local_size_ = 0;  ///< per thread
 
   std::mutex mutex_;  // of all that follows
-  std::condition_variable changed_;
+  ChangeSignal changed_;
   std::vector<Index> ready_;
   NodeVector waiting_;  ///< per task: children that are not done
   Index left_ = 0;      ///< tasks that are not done

@@ -5,6 +5,7 @@
 #include <palpate/linear/detail/parallel_sweeps.hpp>
 
 #include <algorithm>
+#include <chrono>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -89,7 +90,7 @@ PALPATE_INLINE void ParallelSweeps::work(const Sweep& sweep, int thread) noexcep
   std::unique_lock lock(mutex_);
   while (left_ > 0) {
     if (ready_.empty()) {  // another thread is at work
-      changed_.wait(lock);
+      changed_.wait_for(lock, std::chrono::milliseconds(20));
       continue;
     }
     const Index task = next_task(sweep.descending);

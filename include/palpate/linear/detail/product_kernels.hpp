@@ -58,6 +58,7 @@ inline void subtract_tile_within(const Target& c, Index i, Index j, Index steps,
                                  const double* right) noexcept {
   const Steps a{left, tile_rows}, b{right, tile_columns};
   const bool whole = i + tile_rows <= c.rows && j + tile_columns <= c.columns;
+  if (whole) prefetch_tile(c.data + i + j * c.stride, c.stride, tile_columns);
   if (whole && (!c.lower || i >= j + tile_columns - 1))
     return subtract_tile<tile_packets, tile_columns, Into::full>(steps, a, b, 1, c.data + i + j * c.stride, c.stride,
                                                                  tile_columns);

@@ -3,6 +3,8 @@
 
 #include <palpate/core/detail/packet.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Tile shape: three packets times as many columns as leave registers for the operands.
@@ -64,6 +66,13 @@ PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Ind
         store(to, Eigen::internal::pnegate(sum[j][v]));
     }
   }
+}
+
+/// Requests the rows of a whole tile of c in `valid` columns, which arrive while the products are summed.
+inline void prefetch_tile(const double* c, Index c_stride, Index valid) noexcept {
+  constexpr Index line = 8;  // doubles
+  for (Index j = 0; j < std::min<Index>(tile_columns, valid); ++j)
+    for (Index i = 0; i < tile_rows; i += line) Eigen::internal::prefetch(c + i + j * c_stride);
 }
 
 /// The same as a function call: fewer copies of the loop, for many steps.
