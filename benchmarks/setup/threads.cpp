@@ -231,18 +231,18 @@ void set_up(Session& session, const bench::SupportedBody& body, const std::strin
 }  // namespace
 
 void measure_threads(Session& session) {
-  std::vector<int> sizes{16, 26};
-  if (session.long_run) sizes.insert(sizes.end(), {36, 55});
-  for (const int n : sizes) {
-    const bench::SupportedBody block = bench::touch_block(n, n);
-    const std::string where = ", block of " + std::to_string(block.mesh.element_count()) + " tets";
-    factorise(session, block, where);
-    set_up(session, block, where);
+  std::vector<int> cells{16, 26}, layers{11, 17};
+  if (session.long_run) {
+    cells.insert(cells.end(), {36, 55});
+    layers.insert(layers.end(), {25, 38});
   }
-  const bench::SupportedBody organ = bench::touch_organ(17);
-  const std::string where = ", organ-like, " + std::to_string(organ.mesh.element_count()) + " tets";
-  factorise(session, organ, where);
-  set_up(session, organ, where);
+  const auto measure = [&](const bench::SupportedBody& body, const std::string& what) {
+    const std::string where = ", " + what + std::to_string(body.mesh.element_count()) + " tets";
+    factorise(session, body, where);
+    set_up(session, body, where);
+  };
+  for (const int n : cells) measure(bench::touch_block(n, n), "block of ");
+  for (const int n : layers) measure(bench::touch_organ(n), "organ-like, ");
 }
 
 }  // namespace setup

@@ -116,7 +116,13 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
                             : iteration > 1 && change < before ? change * change / (before - change)
                                                                : change;
     before = change;
-    if (arrived_ && !candidates_.has_lost_forces() && expected <= parameters_.force_tolerance) break;
+    if (!arrived_ || candidates_.has_lost_forces()) continue;
+    if (expected <= parameters_.force_tolerance) break;
+    if (iteration > 0) continue;
+    const double remaining = safety * (local_change + rows_.remaining_change(tools));
+    if (!(remaining <= parameters_.force_tolerance)) continue;
+    change = remaining;
+    break;
   }
   rows_.stick(tools);
   shares_.end_tick(rows_.count_pressing());

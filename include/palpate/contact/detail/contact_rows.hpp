@@ -72,6 +72,10 @@ class ContactRows {
   double longest_path() const noexcept { return longest_path_; }
   /// Moves the candidates of the rows to the solution.
   void place_points() noexcept;
+  /// Estimated change of the forces by another linearisation, relative to the largest: how far the normals have rotated
+  /// since this one, and the gaps that a step along them has left. Only for spheres without friction; infinite for
+  /// other tools, with friction and for grasps. Points are at the solution.
+  double remaining_change(std::span<const ContactTool> tools) const noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.
   void stick(std::span<const ContactTool> tools) noexcept;

@@ -320,6 +320,29 @@ PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
 
+PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool> tools) const noexcept {
+  if (friction_.acts()) return infinity;
+  std::array<Vector3, maximum_tools> rotated;
+  rotated.fill(Vector3::Zero());
+  double gap = 0.0;
+  for (int i = 0; i < count_; ++i) {
+    const Contact& row = rows_[at(i)];
+    const ContactTool& tool = tools[at(row.tool)];
+    if (row.grasped || tool.half_length > 0.0) return infinity;
+    if (row.force == 0.0) continue;
+    const CorePoint core = tool.closest(row.point);
+    rotated[at(row.tool)] += row.force * (core.normal - row.normal);
+    gap = std::max(gap, std::abs(core.distance - tool.radius));
+  }
+  double change = 0.0, scale = 0.0;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    change = std::max(change, rotated[t].norm());
+    scale = std::max(scale, tools[t].force.norm());
+  }
+  const double push = deepest_push();
+  return scale > 0.0 && push > 0.0 ? change / scale + gap / push : infinity;
+}
+
 PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Candidate& c,
                                           double radius) const noexcept {
   constexpr double near = 1e-4;  // radii; closer points are the same, on a common edge or vertex

@@ -1,0 +1,80 @@
+// The force of every tick against that of a contact problem that iterates to convergence.
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/mesh/generators.hpp>
+
+#include "catch.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+using namespace palpate;
+
+namespace {
+
+constexpr double radius = 4e-3, height = 10e-3;
+constexpr int ticks_around = 60;
+
+/// A sphere with its contact problem.
+struct Press {
+  ContactProblem problem;
+  std::vector<ContactTool> tools{1};
+  Status status;
+
+  Press(const ContactSurface& surface, const Vector3& start, const ContactParameters& parameters)
+      : problem(surface, radius, parameters) {
+    tools[0].radius = radius;
+    tools[0].compliance = 5e-4;
+    tools[0].target = tools[0].proxy = start;
+    tools[0].active = true;
+  }
+  void tick(auto& model, const Vector3& target) {
+    const Vector3 own = model.to_world().inverse() * target;  // in the model's frame
+    tools[0].motion = own - tools[0].target;
+    tools[0].target = own;
+    status |= problem.solve(model, tools);
+  }
+};
+
+/// Down to `depth`, then around a circle, `step` per tick, and up and down by a tenth of the depth.
+Vector3 path(int tick, double depth, double step) {
+  const double down = depth * std::min(1.0, tick / 40.0), angle = 2.0 * std::numbers::pi * tick / ticks_around;
+  const double orbit = step * ticks_around / (2.0 * std::numbers::pi);
+  return Vector3(0.23e-3 + orbit * std::cos(angle), 0.41e-3 + orbit * std::sin(angle),
+                 height + radius - down + 0.1 * down * std::sin(3.1 * angle));
+}
+
+}  // namespace
+
+TEST_CASE("a tick that ends after one linearisation is as accurate as its tolerance", "[contact][accuracy]") {
+  const Mesh<Tet4> mesh =
+      box_tet4({20e-3, 20e-3, height}, {20, 20, 10}, BoxSplit::five_mirrored, {-10e-3, -10e-3, 0.0});
+  HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>> model(mesh, Scene().fix("z0").touch("z1"),
+                                                                        {10e3, 0.45, 1000.0});
+  const double tolerance = ContactParameters().force_tolerance;
+  for (const double depth : {0.1e-3, 0.5e-3, 2e-3})
+    for (const double step : {2e-6, 20e-6, 100e-6}) {
+      const Vector3 start = model.to_world().inverse() * path(0, depth, step);
+      Press usual(model.contact_surface(), start, {.capacity = 64});
+      Press exact(model.contact_surface(), start, {.maximum_iterations = 50, .force_tolerance = 1e-9, .capacity = 64});
+      double worst = 0.0, sum = 0.0, least = infinity;
+      int pressing = 0;
+      for (int i = 0; i < 4 * ticks_around; ++i) {
+        const Vector3 target = path(i, depth, step);
+        usual.tick(model, target);
+        exact.tick(model, target);
+        if (i < 40) continue;
+        const double force = exact.tools[0].force.norm();
+        const double error = (usual.tools[0].force - exact.tools[0].force).norm() / force;
+        worst = std::max(worst, error);
+        sum += error;
+        least = std::min(least, force);
+        ++pressing;
+      }
+      INFO("depth " << depth << " m, " << step << " m per tick: worst " << worst << ", mean " << sum / pressing);
+      CHECK(least > 0.0);
+      CHECK(worst <= tolerance);
+      CHECK(usual.status == Status{});
+    }
+}
