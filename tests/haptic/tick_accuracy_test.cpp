@@ -11,7 +11,7 @@
 
 using namespace palpate;
 
-namespace {
+namespace tick_accuracy {
 
 constexpr double radius = 4e-3, height = 10e-3;
 constexpr int ticks_around = 60;
@@ -45,8 +45,6 @@ Vector3 path(int tick, double depth, double step) {
                  height + radius - down + 0.1 * down * std::sin(3.1 * angle));
 }
 
-}  // namespace
-
 TEST_CASE("a tick that ends after one linearisation is as accurate as its tolerance", "[contact][accuracy]") {
   const Mesh<Tet4> mesh =
       box_tet4({20e-3, 20e-3, height}, {20, 20, 10}, BoxSplit::five_mirrored, {-10e-3, -10e-3, 0.0});
@@ -78,3 +76,5 @@ TEST_CASE("a tick that ends after one linearisation is as accurate as its tolera
       CHECK(usual.status == Status{});
     }
 }
+
+}  // namespace tick_accuracy

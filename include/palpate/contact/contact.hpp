@@ -26,7 +26,8 @@ struct ToolRadii {
 /// Limits and parameters of the contact solution of a tick.
 struct ContactParameters {
   int maximum_iterations = 4;     ///< linearisations per tick
-  double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick
+  double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick; for
+                                  ///< spheres without friction also its estimate after the first one
   bool local_compliance = true;   ///< spheres smaller than facets get the dent that facets do not show
   double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
   double friction = 0.0;          ///< Coulomb's coefficient; 0 has no cost

@@ -119,6 +119,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (!arrived_ || candidates_.has_lost_forces()) continue;
     if (expected <= parameters_.force_tolerance) break;
     if (iteration > 0) continue;
+    // The first step is long when the device moves, but the linearisation was already made where the tool arrives.
     const double remaining = safety * (local_change + rows_.remaining_change(tools));
     if (!(remaining <= parameters_.force_tolerance)) continue;
     change = remaining;

@@ -55,8 +55,8 @@ class ScaledGradients {
   Index fill(Index e, Index count) noexcept {
     constexpr auto point = E::Quadrature::points[0];
     const Eigen::Matrix<double, E::nodes, 3> reference = E::gradient(reference_point(point));
-    Tensor3<Number> jacobian{};
-    for (Number& entry : jacobian.e) entry = 0.0;
+    const Number zero(0.0);
+    Tensor3<Number> jacobian = Tensor3<Number>::diagonal(zero, zero, zero);
     for (int a = 1; a < E::nodes; ++a) {
       const Triple<Number> edge = edges(e, count, a);
       for (int j = 0; j < 3; ++j) {
@@ -69,7 +69,7 @@ class ScaledGradients {
     const Tensor3<Number> cofactors = cofactor(jacobian);
     const Number determinant_j = determinant(jacobian, cofactors), volume = Number(point.weight) * determinant_j;
     const Number scale = sqrt(volume), over = Number(1.0) / determinant_j;
-    Number invalid(0.0);  // stays zero, or becomes NaN
+    Number invalid = zero;  // stays zero, or becomes NaN
     for (int a = 0; a < E::nodes; ++a)
       for (int i = 0; i < 3; ++i) {
         Number g = cofactors(i, 0) * Number(reference.coeff(a, 0)) + cofactors(i, 1) * Number(reference.coeff(a, 1)) +
