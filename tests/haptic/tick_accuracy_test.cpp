@@ -1,10 +1,12 @@
 // The force of every tick against that of a contact problem that iterates to convergence.
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/mesh/generators.hpp>
 
 #include "catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
