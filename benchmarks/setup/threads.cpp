@@ -11,12 +11,14 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <unistd.h>
-
 #include <array>
 #include <chrono>
 #include <cstring>
 #include <memory>
+
+#if defined(__linux__)
+#include <unistd.h>
+#endif
 
 namespace setup {
 namespace {
@@ -63,23 +65,26 @@ void inform(Session& session, std::string what, std::string figure, std::string 
                     .error = ""});
 }
 
-/// Times of the fronts on two threads, each with a copy, if the memory is sufficient; otherwise on one.
-std::vector<bench::FrontTime> times_of_two(const CholeskyAnalysis& analysis, const SparseMatrix& lower, bool& two) {
-  const double pages = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  two = 2.0 * analysis.peak_bytes(1) < 0.7 * pages;
-  return bench::time_fronts(analysis, lower, two ? 2 : 1);
+/// Threads on which fronts are timed, each with a copy of the system: two if there is memory for both; one where the
+/// memory of the machine is not known.
+int timed_threads([[maybe_unused]] const CholeskyAnalysis& analysis) {
+#if defined(__linux__)
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (2.0 * analysis.peak_bytes(1) < 0.7 * memory) return 2;
+#endif
+  return 1;
 }
 
 /// What more threads would give, and what limits them; for two threads compared with the measured time.
 void predict_threads(Session& session, const CholeskyAnalysis& analysis, const bench::System& system, double measured,
                      const std::string& where) {
-  bool copies = false;
-  const std::vector<bench::FrontTime> times = times_of_two(analysis, system.lower, copies);
+  const int timed = timed_threads(analysis);
+  const std::vector<bench::FrontTime> times = bench::time_fronts(analysis, system.lower, timed);
   const double one = bench::predict(analysis, times, 1).seconds;
   const double two = bench::predict(analysis, times, 2).seconds;
   session.rows.add({.target = "v",
                     .what = "two threads, predicted by work and span / measured" + where,
-                    .figure = bench::milliseconds(two),
+                    .figure = bench::milliseconds(two) + ", fronts timed on " + std::to_string(timed),
                     .baseline = bench::milliseconds(measured),
                     .ratio = std::max(two / measured, measured / two),
                     .bound = bench::at_most(1.1),

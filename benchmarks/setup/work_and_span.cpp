@@ -7,7 +7,6 @@
 #include <palpate/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
-#include <barrier>
 #include <functional>
 #include <queue>
 
@@ -153,8 +152,8 @@ class Simulation {
   Predicted predicted_;
 };
 
-/// Waits for the others before the first front.
-std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseLower& lower, std::barrier<>& together) {
+/// One factorisation in this thread.
+std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseLower& lower) {
   constexpr double shared_flops = 3e7;  // as in ParallelFronts
   const detail::FrontTree& tree = analysis.tree();
   detail::BigArray factor(tree.factor_size + 64), updates(tree.workspace_size + 64);
@@ -163,7 +162,6 @@ std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseL
   system.take(lower);
   detail::FrontWork work(tree, analysis.pack_size());
   std::vector<FrontTime> times;
-  together.arrive_and_wait();
   for (Index f = 0; f < tree.fronts.size(); ++f) {
     system.updates[f] = updates.data() + tree.fronts[f].update;
     TimedTeam team;
@@ -179,9 +177,8 @@ std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseL
 
 std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const SparseLower& lower, int threads) {
   std::vector<std::vector<FrontTime>> of_thread(static_cast<std::size_t>(threads));
-  std::barrier together(threads);
-  StartedThreads(threads).run(
-      threads, [&](int t) { of_thread[static_cast<std::size_t>(t)] = time_copy(analysis, lower, together); });
+  StartedThreads(threads).run(threads,
+                              [&](int t) { of_thread[static_cast<std::size_t>(t)] = time_copy(analysis, lower); });
   std::vector<FrontTime> mean(of_thread.front().size());
   for (const std::vector<FrontTime>& times : of_thread)
     for (std::size_t f = 0; f < mean.size(); ++f) {

@@ -73,6 +73,7 @@ TEST_CASE("a tick that ends after one linearisation is as accurate as its tolera
         ++pressing;
       }
       INFO("depth " << depth << " m, " << step << " m per tick: worst " << worst << ", mean " << sum / pressing);
+      CHECK(std::isfinite(sum));
       CHECK(least > 0.0);
       CHECK(worst <= tolerance);
       CHECK(usual.status == Status{});

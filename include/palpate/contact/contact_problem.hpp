@@ -83,7 +83,7 @@ class ContactProblem {
   static constexpr int added_per_round = 16;  // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
-  static constexpr double safety = 1.5;                  // of the estimate that ends a tick after one linearisation
+  static constexpr double estimate_safety = 1.5;         // factor on the estimate after one linearisation
   static constexpr double violation = 1e-5;              // allowed penetration, relative to the deepest push
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -101,6 +101,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
+  bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) const noexcept;
 
   ContactParameters parameters_;
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started

@@ -109,21 +109,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     follow(tools);
     proxies_.end(tools);
     change = std::max(local_change, proxies_.relative_change(tools));
-    // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
-    // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
-    // device, so the second gives no ratio yet.
-    const double expected = iteration == 0                     ? 10.0 * change
-                            : iteration > 1 && change < before ? change * change / (before - change)
-                                                               : change;
+    if (has_converged(tools, iteration, local_change, before, change)) break;
     before = change;
-    if (!arrived_ || candidates_.has_lost_forces()) continue;
-    if (expected <= parameters_.force_tolerance) break;
-    if (iteration > 0) continue;
-    // The first step is long when the device moves, but the linearisation was already made where the tool arrives.
-    const double remaining = safety * (local_change + rows_.remaining_change(tools));
-    if (!(remaining <= parameters_.force_tolerance)) continue;
-    change = remaining;
-    break;
   }
   rows_.stick(tools);
   shares_.end_tick(rows_.count_pressing());
@@ -132,6 +119,27 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, change <= unsettled);
   return status;
+}
+
+/// Whether the expected change by further linearisations is within the tolerance. `change` is that of the last one,
+/// `before` that of the one before it, `local_change` the part of the dent of coarse facets. Where the estimate of the
+/// next change ends the tick, `change` becomes that estimate.
+PALPATE_INLINE bool ContactProblem::has_converged(Tools tools, int iteration, double local_change, double before,
+                                                  double& change) const noexcept {
+  if (!arrived_ || candidates_.has_lost_forces()) return false;
+  // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
+  // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
+  // device, so the second gives no ratio yet.
+  const double expected = iteration == 0                     ? 10.0 * change
+                          : iteration > 1 && change < before ? change * change / (before - change)
+                                                             : change;
+  if (expected <= parameters_.force_tolerance) return true;
+  if (iteration > 0) return false;
+  // The first step is long when the device moves, but it was linearised close to where the tool arrives.
+  const double estimate = estimate_safety * (local_change + rows_.remaining_change(tools));
+  if (!(estimate <= parameters_.force_tolerance)) return false;
+  change = estimate;
+  return true;
 }
 
 PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {

@@ -223,7 +223,7 @@ inline void set_float_mode(std::uint64_t mode) noexcept {
   _mm_setcsr(static_cast<unsigned>(mode));
 }
 inline constexpr std::uint64_t flush_denormals = 0x8040;  // FTZ and DAZ
-/// For loops that wait: lets the other thread of the core work.
+/// Informs the processor that this thread spins.
 inline void pause() noexcept {
   _mm_pause();
 }

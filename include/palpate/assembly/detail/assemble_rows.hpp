@@ -111,13 +111,14 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
                    BlockMatrix& k, const SetupLimits& limits) {
   limits.require_memory(ScaledGradients<E>::bytes(mesh), "the gradients of all elements");
   const ScaledGradients<E> gradients(mesh, limits.threads);
-  const Index rows = k.pattern().rows(), step = 8192 * Index{limits.threads.threads()};
+  const Index rows = k.pattern().rows();
+  const Index group = 8192 * Index{limits.threads.threads()};  // rows between two reports of progress
   std::vector<detail::RowAssembly<E>> assembly;
   for (int thread = 0; thread < limits.threads.threads(); ++thread)
     assembly.emplace_back(mesh, around, gradients, region);
-  for (Index first = 0; first < rows; first += step) {
+  for (Index first = 0; first < rows; first += group) {
     limits.advance("assembly", static_cast<double>(first) / static_cast<double>(rows));
-    detail::thread_ranges(std::min(step, rows - first), 4096, limits.threads, [&](int thread, Index begin, Index end) {
+    detail::thread_ranges(std::min(group, rows - first), 4096, limits.threads, [&](int thread, Index begin, Index end) {
       for (Index i = first + begin; i < first + end; ++i) assembly[static_cast<std::size_t>(thread)].add_row(i, k);
     });
   }

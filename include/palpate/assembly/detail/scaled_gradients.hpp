@@ -17,15 +17,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Spatial gradients of all elements times the square root of the volume; K_ab is a sum of products of these.
+/// Spatial gradients [1/m] of all elements times the square root of the volume; K_ab is a sum of products of these. The
+/// same bits for any number of threads.
 template <ConstantGradient E>
 class ScaledGradients {
  public:
   /// The memory in bytes.
-  static double bytes(const Mesh<E>& mesh) { return static_cast<double>(mesh.element_count()) * stride * 8 + 8; }
+  static double bytes(const Mesh<E>& mesh) {
+    return sizeof(double) * (static_cast<double>(mesh.element_count()) * stride + 1);
+  }
 
   /// Throws inverted_element for a volume that is not positive, non_finite for one that is not finite. Allocates.
-  explicit ScaledGradients(const Mesh<E>& mesh, const SetupThreads& threads = 1)
+  explicit ScaledGradients(const Mesh<E>& mesh, const SetupThreads& threads)
       : mesh_(mesh), values_(static_cast<std::size_t>(mesh.element_count() * stride + 1)) {
     const Index count = mesh.element_count();
     std::vector<Index> refused(static_cast<std::size_t>(threads.threads()), count);  // per thread: the first element

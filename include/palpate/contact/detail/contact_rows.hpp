@@ -72,9 +72,10 @@ class ContactRows {
   double longest_path() const noexcept { return longest_path_; }
   /// Moves the candidates of the rows to the solution.
   void place_points() noexcept;
-  /// Estimated change of the forces by another linearisation, relative to the largest: how far the normals have rotated
-  /// since this one, and the gaps that a step along them has left. Only for spheres without friction; infinite for
-  /// other tools, with friction and for grasps. Points are at the solution.
+  /// Estimated change of the tools' forces by another linearisation, relative to the largest force: that of the contact
+  /// forces when their normals follow the solution, and the gaps at the solution relative to the deepest push. To be
+  /// called after the proxies have moved to the solution. Infinite for tools other than spheres, with friction and for
+  /// grasps: not known. No allocation; O(rows).
   double remaining_change(std::span<const ContactTool> tools) const noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.

@@ -322,8 +322,8 @@ PALPATE_INLINE void ContactRows::place_points() noexcept {
 
 PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool> tools) const noexcept {
   if (friction_.acts()) return infinity;
-  std::array<Vector3, maximum_tools> rotated;
-  rotated.fill(Vector3::Zero());
+  std::array<Vector3, maximum_tools> change;
+  change.fill(Vector3::Zero());
   double gap = 0.0;
   for (int i = 0; i < count_; ++i) {
     const Contact& row = rows_[at(i)];
@@ -331,16 +331,16 @@ PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool>
     if (row.grasped || tool.half_length > 0.0) return infinity;
     if (row.force == 0.0) continue;
     const CorePoint core = tool.closest(row.point);
-    rotated[at(row.tool)] += row.force * (core.normal - row.normal);
+    change[at(row.tool)] += row.force * (core.normal - row.normal);
     gap = std::max(gap, std::abs(core.distance - tool.radius));
   }
-  double change = 0.0, scale = 0.0;
+  double largest_change = 0.0, largest_force = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    change = std::max(change, rotated[t].norm());
-    scale = std::max(scale, tools[t].force.norm());
+    largest_change = std::max(largest_change, change[t].norm());
+    largest_force = std::max(largest_force, tools[t].force.norm());
   }
   const double push = deepest_push();
-  return scale > 0.0 && push > 0.0 ? change / scale + gap / push : infinity;
+  return largest_force > 0.0 && push > 0.0 ? largest_change / largest_force + gap / push : infinity;
 }
 
 PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Candidate& c,

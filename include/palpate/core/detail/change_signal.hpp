@@ -1,4 +1,4 @@
-// A condition variable for threads that hardly ever wait for long.
+// A condition variable for short waits.
 #pragma once
 
 #include <palpate/core/config.hpp>
@@ -11,9 +11,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Tells waiting threads that the data of a mutex have changed. A thread that waits looks for a change for a while
-/// before it sleeps: waking it takes tens of microseconds, much more in a virtual machine, and between the parts of a
-/// factorisation most waits are shorter than that.
+/// Wakes threads that wait for a change of the data that a mutex protects. A waiting thread spins before it sleeps:
+/// waking it takes tens of microseconds, more in a virtual machine, and most waits between the parts of a factorisation
+/// are shorter.
 class ChangeSignal {
  public:
   /// The caller has locked the mutex.
@@ -22,13 +22,13 @@ class ChangeSignal {
     changed_.notify_all();
   }
 
-  /// Returns after a change since the call, after `most`, or now and then without a reason. `lock` is locked at the
-  /// call and at the return.
+  /// Returns after a change since the call, after `most`, or spuriously. `lock` is locked at the call and at the
+  /// return.
   void wait_for(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds most) {
     const unsigned before = changes_.load(std::memory_order_relaxed);
     lock.unlock();
     const auto start = std::chrono::steady_clock::now();
-    while (changes_.load(std::memory_order_acquire) == before && std::chrono::steady_clock::now() - start < awake)
+    while (changes_.load(std::memory_order_acquire) == before && std::chrono::steady_clock::now() - start < spinning)
       for (int i = 0; i < 8; ++i) platform::pause();
     lock.lock();
     if (changes_.load(std::memory_order_relaxed) == before) changed_.wait_for(lock, most);
@@ -39,7 +39,7 @@ class ChangeSignal {
   }
 
  private:
-  static constexpr std::chrono::microseconds awake{100};
+  static constexpr std::chrono::microseconds spinning{100};
   std::atomic<unsigned> changes_{0};
   std::condition_variable changed_;
 };

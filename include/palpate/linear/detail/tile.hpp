@@ -68,7 +68,7 @@ PALPATE_ALWAYS_INLINE void subtract_tile_here(Index steps, Steps a, Steps b, Ind
   }
 }
 
-/// Requests the rows of a whole tile of c in `valid` columns, which arrive while the products are summed.
+/// Prefetches the first `valid` columns of a tile of c, so that they are in the cache once the products are summed.
 inline void prefetch_tile(const double* c, Index c_stride, Index valid) noexcept {
   constexpr Index line = 8;  // doubles
   for (Index j = 0; j < std::min<Index>(tile_columns, valid); ++j)
