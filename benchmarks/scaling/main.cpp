@@ -38,7 +38,7 @@ Sample measure(const std::string& name, const bench::SupportedBody& constrained)
   s.kept = static_cast<double>(r.touchable_vertices);
   s.wall = r.total_seconds();
   body->press_until(10);
-  s.tick = bench::hot_ticks(*body, 10000);
+  s.tick = bench::hot_ticks(*body, 80000);
   s.contacts = body->pressing();
   s.error = body->gap_error();
   std::printf(

@@ -80,4 +80,26 @@ TEST_CASE("a tick that ends after one linearisation is as accurate as its tolera
     }
 }
 
+TEST_CASE("a fast sphere needs one linearisation: its normals follow the solution", "[contact][accuracy]") {
+  const Mesh<Tet4> mesh =
+      box_tet4({20e-3, 20e-3, height}, {20, 20, 10}, BoxSplit::five_mirrored, {-10e-3, -10e-3, 0.0});
+  HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>> model(mesh, Scene().fix("z0").touch("z1"),
+                                                                        {10e3, 0.45, 1000.0});
+  const double depth = 0.5e-3, step = 100e-6;
+  const Vector3 start = model.to_world().inverse() * path(0, depth, step);
+  Press one(model.contact_surface(), start, {.maximum_iterations = 1, .capacity = 64});
+  Press exact(model.contact_surface(), start, {.maximum_iterations = 50, .force_tolerance = 1e-9, .capacity = 64});
+  double worst = 0.0;
+  for (int i = 0; i < 4 * ticks_around; ++i) {
+    one.tick(model, path(i, depth, step));
+    exact.tick(model, path(i, depth, step));
+    if (i < 40) continue;
+    const double error = (one.tools[0].force - exact.tools[0].force).norm() / exact.tools[0].force.norm();
+    worst = error <= worst ? worst : error;  // NaN stays
+  }
+  INFO("worst " << worst);
+  CHECK(worst > 0.0);
+  CHECK(worst <= 2e-3);
+}
+
 }  // namespace tick_accuracy

@@ -83,7 +83,10 @@ class ContactProblem {
   static constexpr int added_per_round = 16;  // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
   static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
-  static constexpr double estimate_safety = 1.5;         // factor on the estimate after one linearisation
+  static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
+  static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation
+  static constexpr int most_corrections = 3;             // steps with the same compliance in a linearisation
+  static constexpr double largest_correction = 0.05;     // where more is estimated, another linearisation follows
   static constexpr double violation = 1e-5;              // allowed penetration, relative to the deepest push
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -93,6 +96,7 @@ class ContactProblem {
   inline bool may_have_row(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
+  void follow_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
   void add_model_errors(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
@@ -101,7 +105,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
-  bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) const noexcept;
+  bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) noexcept;
 
   ContactParameters parameters_;
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started

@@ -125,12 +125,12 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 /// `before` that of the one before it, `local_change` the part of the dent of coarse facets. Where the estimate of the
 /// next change ends the tick, `change` becomes that estimate.
 PALPATE_INLINE bool ContactProblem::has_converged(Tools tools, int iteration, double local_change, double before,
-                                                  double& change) const noexcept {
+                                                  double& change) noexcept {
   if (!arrived_ || candidates_.has_lost_forces()) return false;
   // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
   // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
   // device, so the second gives no ratio yet.
-  const double expected = iteration == 0                     ? 10.0 * change
+  const double expected = iteration == 0                     ? first_change_safety * change
                           : iteration > 1 && change < before ? change * change / (before - change)
                                                              : change;
   if (expected <= parameters_.force_tolerance) return true;
@@ -305,11 +305,25 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
     status |= columns;
     late_ = columns.has(StatusFlag::degraded_model);
     rows_.build(tissue, candidates_.samples(), tools, floor_, built);
-    if (!rows_.solve()) status.set(StatusFlag::solver_not_converged);
+    if (!rows_.solve(built)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
+    if (iteration == 0 && built == 0) follow_normals(tissue, tools, status);
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
     if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
+    rows_.apply(tools, displacement_);
+  }
+}
+
+/// Where normals at the solution differ so much from those of the linearisation that another one would follow: they are
+/// corrected at a fraction of its cost. Points that move on their facets need that other linearisation.
+PALPATE_INLINE void ContactProblem::follow_normals(const TissueView& tissue, Tools tools, Status& status) noexcept {
+  if (rows_.has_moving() || first_change_safety * proxies_.relative_change(tools) <= parameters_.force_tolerance)
+    return;
+  for (int k = 0; k < most_corrections; ++k) {
+    const double estimate = estimate_safety * rows_.remaining_change(tools);
+    if (estimate <= parameters_.force_tolerance || !(estimate <= largest_correction)) return;
+    if (!rows_.follow_normals(tissue, candidates_.samples(), tools)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
   }
 }

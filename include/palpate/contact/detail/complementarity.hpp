@@ -50,6 +50,10 @@ class ComplementarityProblem {
   bool solve() noexcept;
   /// The same for other gaps b, after `solve` with the same W: its factor is used again.
   bool solve_again() noexcept;
+  /// The same after rows `first` and later were added to those of `solve`.
+  bool solve_added(int first) noexcept;
+  /// b + W lambda of the solution [m].
+  double gap(int i) const noexcept { return gap_[at(i)] - relaxation * w(i, i) * lambda[at(i)]; }
 
  private:
   std::size_t place(int i, int j) const noexcept {

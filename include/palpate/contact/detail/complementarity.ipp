@@ -26,7 +26,11 @@ PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
 
 PALPATE_INLINE bool ComplementarityProblem::solve() noexcept {
   order_count_ = factored_ = 0;
-  for (int i = 0; i < rows_; ++i) {
+  return solve_added(0);
+}
+
+PALPATE_INLINE bool ComplementarityProblem::solve_added(int first) noexcept {
+  for (int i = first; i < rows_; ++i) {
     active_[at(i)] = bilateral[at(i)] || lambda[at(i)] > 0.0;
     if (active_[at(i)]) order_[at(order_count_++)] = i;
   }

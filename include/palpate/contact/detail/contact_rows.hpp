@@ -31,6 +31,8 @@ class ContactRows {
   std::array<int, maximum_tools> count_pressing() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
   const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
+  /// Whether a point moves on its facet.
+  bool has_moving() const noexcept { return has_moving_; }
   /// Whether a row is at the place of a candidate that moves: two facets have their closest points on a common edge.
   bool has_same(const Candidates& candidates, const Candidate& c, double radius) const noexcept;
 
@@ -50,8 +52,9 @@ class ContactRows {
   /// contact force.
   void build(const TissueView& tissue, const ContactSamples& samples, std::span<const ContactTool> tools, double floor,
              int first) noexcept;
-  /// Solves for the normal forces with the present friction forces. False when the iteration was stopped early.
-  bool solve() noexcept;
+  /// Solves for the normal forces with the present friction forces, after `build` from row `first`. False when the
+  /// iteration was stopped early.
+  bool solve(int first) noexcept;
   /// Solves for the friction forces and for the normal forces in turn (Panagiotopoulos 1975),
   /// until both stay or the bound of the work is reached; further linearisations and ticks continue the iteration.
   /// Stopped too early, it may alternate from tick to tick between two states, since normals follow the unfinished
@@ -74,9 +77,14 @@ class ContactRows {
   void place_points() noexcept;
   /// Estimated change of the tools' forces by another linearisation, relative to the largest force: that of the contact
   /// forces when their normals follow the solution, and the gaps at the solution relative to the deepest push. To be
-  /// called after the proxies have moved to the solution. Infinite for tools other than spheres, with friction and for
-  /// grasps: not known. No allocation; O(rows).
-  double remaining_change(std::span<const ContactTool> tools) const noexcept;
+  /// called after `apply`. Infinite for tools other than spheres, with friction and for grasps: not known.
+  /// No allocation; O(rows) for the first call after `apply`.
+  double remaining_change(std::span<const ContactTool> tools) noexcept;
+  /// A step from the solution with the same W, as in a chord method, after `remaining_change`, where that is finite:
+  /// forces act along the normals at the solution, and gaps are distances there. `apply` must follow. False when the
+  /// iteration was stopped early. No allocation; O(rows^2).
+  bool follow_normals(const TissueView& tissue, const ContactSamples& samples,
+                      std::span<const ContactTool> tools) noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.
   void stick(std::span<const ContactTool> tools) noexcept;
@@ -95,12 +103,14 @@ class ContactRows {
                                               const Vector3& by_arm) noexcept;
   inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
   void store_friction(std::span<ContactTool> tools) const noexcept;
+  double estimate_change(std::span<const ContactTool> tools) noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
                                      double* of_m) noexcept;
   inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
                         int i) noexcept;
   inline void update_gaps() noexcept;
-  inline Vector3 moved_point(int i) const noexcept;
+  inline Vector3 moved_point(int i, int pressing) const noexcept;
+  inline Vector3 turned_displacement(const TissueView& tissue, const ContactSamples& samples, int i) noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.
   Vector3& response(int i, int j) noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
@@ -116,6 +126,12 @@ class ContactRows {
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;
   std::vector<Vector3> response_;
+  std::vector<Vector3> turned_;  // by remaining_change: change of a row's force when its normal follows the solution
+  std::vector<Vector3> path_;    // by follow_normals: displacement of a row's point by the turned parts
+  std::vector<Vector3> shift_;   // displacement of a row's point by the forces turned since `build`
+  std::array<Vector3, maximum_tools> turned_of_tool_{};
+  double remaining_change_ = -1.0;  // negative: not known
+  bool has_moving_ = false;
   std::vector<int> vertices_;
   std::vector<int> slot_;  // scratch per vertex: -1 between calls
 };

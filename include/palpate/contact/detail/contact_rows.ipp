@@ -20,6 +20,9 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       rows_(at(capacity)),
       candidate_(at(capacity)),
       response_(problem_.stride() * at(capacity)),
+      turned_(at(capacity)),
+      path_(at(capacity)),
+      shift_(at(capacity)),
       vertices_(3 * at(capacity)),
       slot_(at(vertices), -1) {}
 
@@ -102,6 +105,7 @@ PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) n
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
   count_ = 0;
+  has_moving_ = false;
   longest_path_ = alternation_change_ = 0.0;
   compliance_.begin_rows();
 }
@@ -123,7 +127,10 @@ PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candid
   c.row = count_;
   c.slot = compliance_.slot_of(c.sample, c.slot);
   const ContactSample& sample = candidates.sample_of(c);
-  if (candidates.is_moving(c)) compliance_.move(c.slot, sample);
+  if (candidates.is_moving(c)) {
+    compliance_.move(c.slot, sample);
+    has_moving_ = true;
+  }
   candidate_[at(count_)] = &c;
   Contact& row = rows_[at(count_++)];
   row.tool = c.tool;
@@ -216,6 +223,7 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
   problem_.resize(count_);
   for (int i = first; i < count_; ++i) {
     problem_.lambda[at(i)] = 1.0;  // it presses, or would penetrate
+    shift_[at(i)].setZero();
     Contact& ci = rows_[at(i)];
     const ContactTool& tool = tools[at(ci.tool)];
     problem_.bilateral[at(i)] = ci.grasped;
@@ -229,9 +237,9 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
   friction_.begin(count_, pressed_.data());
 }
 
-PALPATE_INLINE bool ContactRows::solve() noexcept {
+PALPATE_INLINE bool ContactRows::solve(int first) noexcept {
   if (friction_.acts()) update_gaps();
-  const bool solved = problem_.solve();
+  const bool solved = first > 0 ? problem_.solve_added(first) : problem_.solve();
   if (friction_.acts()) friction_.press(problem_.lambda.data());
   return solved;
 }
@@ -278,13 +286,19 @@ PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
   return deepest;
 }
 
-/// A row's point under all normal forces [m].
-inline Vector3 ContactRows::moved_point(int i) const noexcept {
-  Vector3 point = rows_[at(i)].rest;
-  const Vector3* moved = &response(i, 0);
-  for (int j = 0; j < count_; ++j, ++moved)
-    if (const double force = problem_.lambda[at(j)]; force != 0.0) point.noalias() -= force * *moved;
-  return point;
+/// The point of row i under the normal forces of the first `pressing` rows [m].
+inline Vector3 ContactRows::moved_point(int i, int pressing) const noexcept {
+  const double *response = this->response(i, 0).data(), *force = problem_.lambda.data();
+  double even[3] = {}, odd[3] = {};  // independent sums, for speed
+  int j = 0;
+  for (; j + 2 <= pressing; j += 2, response += 6)
+    for (int c = 0; c < 3; ++c) {
+      even[c] += force[j] * response[c];
+      odd[c] += force[j + 1] * response[3 + c];
+    }
+  if (j < pressing)
+    for (int c = 0; c < 3; ++c) even[c] += force[j] * response[c];
+  return rows_[at(i)].rest - shift_[at(i)] - Vector3(even[0] + odd[0], even[1] + odd[1], even[2] + odd[2]);
 }
 
 PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept {
@@ -294,6 +308,8 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     tool.torque.setZero();
   }
   if (friction_.acts()) store_friction(tools);
+  int pressing = count_;  // where a solution failed, there are no forces, and the compliance may not be finite
+  while (pressing > 0 && problem_.lambda[at(pressing - 1)] == 0.0) --pressing;
   double longest = 0.0;
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
@@ -301,7 +317,7 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     c.force = row.force = problem_.lambda[at(i)];
     if (friction_.acts()) c.friction = row.friction = friction_.force(i);
     if (c.force == 0.0 && !c.grasped) c.history.known = 0;
-    row.point = moved_point(i);
+    row.point = moved_point(i, pressing);
     if (friction_.acts()) row.point -= friction_.displacement(i) - coupling_displacement(tools[at(row.tool)], row);
     longest = std::max(longest, (row.point - c.point).squaredNorm());
     if (row.force == 0.0) continue;
@@ -314,33 +330,87 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
   }
   for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
   longest_path_ = std::sqrt(longest);
+  remaining_change_ = -1.0;
 }
 
 PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
 
-PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool> tools) const noexcept {
+PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool> tools) noexcept {
+  if (remaining_change_ < 0.0) remaining_change_ = estimate_change(tools);
+  return remaining_change_;
+}
+
+PALPATE_INLINE double ContactRows::estimate_change(std::span<const ContactTool> tools) noexcept {
   if (friction_.acts()) return infinity;
-  std::array<Vector3, maximum_tools> change;
-  change.fill(Vector3::Zero());
+  turned_of_tool_.fill(Vector3::Zero());
   double gap = 0.0;
   for (int i = 0; i < count_; ++i) {
     const Contact& row = rows_[at(i)];
     const ContactTool& tool = tools[at(row.tool)];
     if (row.grasped || tool.half_length > 0.0) return infinity;
+    turned_[at(i)].setZero();
     if (row.force == 0.0) continue;
-    const CorePoint core = tool.closest(row.point);
-    change[at(row.tool)] += row.force * (core.normal - row.normal);
-    gap = std::max(gap, std::abs(core.distance - tool.radius));
+    const Vector3 arm = tool.goal(floor_) - row.point;
+    const double distance = arm.norm();
+    turned_[at(i)] = row.force * (arm / distance - row.normal);
+    turned_of_tool_[at(row.tool)] += turned_[at(i)];
+    gap = std::max(gap, std::abs(distance - tool.radius));
   }
   double largest_change = 0.0, largest_force = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    largest_change = std::max(largest_change, change[t].norm());
+    largest_change = std::max(largest_change, turned_of_tool_[t].norm());
     largest_force = std::max(largest_force, tools[t].force.norm());
   }
   const double push = deepest_push();
   return largest_force > 0.0 && push > 0.0 ? largest_change / largest_force + gap / push : infinity;
+}
+
+/// The displacement of the point of row i by the turned parts of the forces.
+inline Vector3 ContactRows::turned_displacement(const TissueView& tissue, const ContactSamples& samples,
+                                                int i) noexcept {
+  Vector3 displacement = Vector3::Zero();
+  const int p = candidate_[at(i)]->slot;
+  for (int j = 0; j < count_; ++j) {
+    if (rows_[at(j)].force == 0.0) continue;
+    const int q = candidate_[at(j)]->slot;
+    if (p >= q)
+      displacement.noalias() += compliance_(tissue, samples, p, q) * turned_[at(j)];
+    else
+      displacement.noalias() += compliance_(tissue, samples, q, p).transpose() * turned_[at(j)];
+  }
+  return displacement;
+}
+
+/// The turned forces move points and proxies, and that turns the normals further. With the ratio of the two changes, an
+/// average over the rows, the turns are extrapolated to where they stay.
+PALPATE_INLINE bool ContactRows::follow_normals(const TissueView& tissue, const ContactSamples& samples,
+                                                std::span<const ContactTool> tools) noexcept {
+  const auto path = [&](const ContactTool& tool, int i) -> Vector3 {
+    return (tool.total_compliance() + floor_) * turned_of_tool_[at(rows_[at(i)].tool)] + path_[at(i)];
+  };
+  double back = 0.0, changed = 0.0;
+  for (int i = 0; i < count_; ++i) {
+    const ContactTool& tool = tools[at(rows_[at(i)].tool)];
+    path_[at(i)] = turned_displacement(tissue, samples, i);
+    if (rows_[at(i)].force == 0.0) continue;
+    back += turned_[at(i)].dot(path(tool, i)) / tool.radius;
+    changed += turned_[at(i)].squaredNorm() / rows_[at(i)].force;
+  }
+  const double ratio = changed > 0.0 ? std::clamp(back / changed, 0.0, 0.75) : 0.0;
+  const double factor = 1.0 / (1.0 - ratio);
+  for (int i = 0; i < count_; ++i) {
+    Contact& row = rows_[at(i)];
+    const ContactTool& tool = tools[at(row.tool)];
+    const Vector3 arm = tool.goal(floor_) - row.point;
+    problem_.b[at(i)] += (arm + factor * path(tool, i)).norm() - tool.radius - problem_.gap(i);
+    shift_[at(i)] += factor * path_[at(i)];
+    row.normal = (row.normal + factor * (arm.normalized() - row.normal)).normalized();
+    row.arm = -tool.radius * row.normal;
+    candidate_[at(i)]->history.used = row.normal;
+  }
+  return problem_.solve_again();
 }
 
 PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Candidate& c,

@@ -29,19 +29,18 @@ class PointCompliance {
   void move(int slot, const ContactSample& point) noexcept;
 
   /// The compliance between the points in two slots, p >= q.
-  const Matrix3& operator()(const TissueView& tissue, const ContactSamples& samples, int p, int q) noexcept {
+  PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const ContactSamples& samples, int p,
+                                                  int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
     const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
-    if (known_[i] != version) {
-      known_[i] = version;
-      tissue.between(point(samples, p), point(samples, q), block_[i]);
-    }
+    if (known_[i] != version) compute(tissue, samples, p, q);
     return block_[i];
   }
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   int take(int sample) noexcept;
+  void compute(const TissueView& tissue, const ContactSamples& samples, int p, int q) noexcept;
   const ContactSample& point(const ContactSamples& samples, int slot) const noexcept {
     return sample_[at(slot)] < samples.count() ? samples[sample_[at(slot)]] : moving_[at(slot)];
   }

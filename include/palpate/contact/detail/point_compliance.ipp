@@ -45,6 +45,13 @@ PALPATE_INLINE void PointCompliance::move(int slot, const ContactSample& point) 
   version_[at(slot)] = ++versions_ & 0xffffffffu;
 }
 
+PALPATE_INLINE void PointCompliance::compute(const TissueView& tissue, const ContactSamples& samples, int p,
+                                             int q) noexcept {
+  const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
+  known_[i] = version_[at(p)] << 32 | version_[at(q)];
+  tissue.between(point(samples, p), point(samples, q), block_[i]);
+}
+
 PALPATE_INLINE int PointCompliance::take(int sample) noexcept {
   const int capacity = static_cast<int>(sample_.size());
   while (used_[at(next_)] == rows_) next_ = next_ + 1 == capacity ? 0 : next_ + 1;
