@@ -209,6 +209,35 @@ TEST_CASE("any initial value gives the same solution", "[contact][complementarit
   CHECK(warm < cold / 4);
 }
 
+TEST_CASE("rows that are added to a solution give the solution of all rows, and gaps are those of the forces",
+          "[contact][complementarity]") {
+  testing::Random random(57);
+  double worst = 0.0, worst_gap = 0.0;
+  int unsolved = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Case c = random_case(random, 24, 2.0);
+    Problem whole, grown;
+    load(whole, c);
+    unsolved += !whole.solve();
+    load(grown, c);
+    int first = 4 + round % 17;
+    grown.resize(first);
+    unsolved += !grown.solve();
+    for (const int rows : {first + 3, 24}) {
+      grown.resize(rows);
+      for (int i = first; i < rows; ++i) grown.lambda[static_cast<std::size_t>(i)] = 1.0;
+      unsolved += !grown.solve_added(first);
+      first = rows;
+    }
+    worst = std::max(worst, (grown.forces() - whole.forces()).norm() / whole.forces().norm());
+    const VectorX gap = c.b + c.w * grown.forces();
+    for (int i = 0; i < 24; ++i) worst_gap = std::max(worst_gap, std::abs(grown.gap(i) - gap[i]));
+  }
+  CHECK(unsolved == 0);
+  CHECK(worst < 1e-9);
+  CHECK(worst_gap < 1e-12);
+}
+
 TEST_CASE("without penetration there is no force", "[contact][complementarity]") {
   testing::Random random(55);
   for (int n : {1, 7, 48}) {
