@@ -110,7 +110,7 @@ class ContactRows {
                         int i) noexcept;
   inline void update_gaps() noexcept;
   inline Vector3 moved_point(int i, int pressing) const noexcept;
-  inline Vector3 turned_displacement(const TissueView& tissue, const ContactSamples& samples, int i) noexcept;
+  inline Vector3 redirected_displacement(const TissueView& tissue, const ContactSamples& samples, int i) noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.
   Vector3& response(int i, int j) noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
@@ -126,10 +126,11 @@ class ContactRows {
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;
   std::vector<Vector3> response_;
-  std::vector<Vector3> turned_;  // by remaining_change: change of a row's force when its normal follows the solution
-  std::vector<Vector3> path_;    // by follow_normals: displacement of a row's point by the turned parts
-  std::vector<Vector3> shift_;   // displacement of a row's point by the forces turned since `build`
-  std::array<Vector3, maximum_tools> turned_of_tool_{};
+  std::vector<Vector3>
+      redirected_;              // by remaining_change: change of a row's force when its normal follows the solution
+  std::vector<Vector3> path_;   // by follow_normals: displacement of a row's point by the redirected parts
+  std::vector<Vector3> shift_;  // displacement of a row's point by the forces redirected since `build`
+  std::array<Vector3, maximum_tools> redirected_of_tool_{};
   double remaining_change_ = -1.0;  // negative: not known
   bool has_moving_ = false;
   std::vector<int> vertices_;

@@ -20,7 +20,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       rows_(at(capacity)),
       candidate_(at(capacity)),
       response_(problem_.stride() * at(capacity)),
-      turned_(at(capacity)),
+      redirected_(at(capacity)),
       path_(at(capacity)),
       shift_(at(capacity)),
       vertices_(3 * at(capacity)),
@@ -344,59 +344,59 @@ PALPATE_INLINE double ContactRows::remaining_change(std::span<const ContactTool>
 
 PALPATE_INLINE double ContactRows::estimate_change(std::span<const ContactTool> tools) noexcept {
   if (friction_.acts()) return infinity;
-  turned_of_tool_.fill(Vector3::Zero());
+  redirected_of_tool_.fill(Vector3::Zero());
   double gap = 0.0;
   for (int i = 0; i < count_; ++i) {
     const Contact& row = rows_[at(i)];
     const ContactTool& tool = tools[at(row.tool)];
     if (row.grasped || tool.half_length > 0.0) return infinity;
-    turned_[at(i)].setZero();
+    redirected_[at(i)].setZero();
     if (row.force == 0.0) continue;
     const Vector3 arm = tool.goal(floor_) - row.point;
     const double distance = arm.norm();
-    turned_[at(i)] = row.force * (arm / distance - row.normal);
-    turned_of_tool_[at(row.tool)] += turned_[at(i)];
+    redirected_[at(i)] = row.force * (arm / distance - row.normal);
+    redirected_of_tool_[at(row.tool)] += redirected_[at(i)];
     gap = std::max(gap, std::abs(distance - tool.radius));
   }
   double largest_change = 0.0, largest_force = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    largest_change = std::max(largest_change, turned_of_tool_[t].norm());
+    largest_change = std::max(largest_change, redirected_of_tool_[t].norm());
     largest_force = std::max(largest_force, tools[t].force.norm());
   }
   const double push = deepest_push();
   return largest_force > 0.0 && push > 0.0 ? largest_change / largest_force + gap / push : infinity;
 }
 
-/// The displacement of the point of row i by the turned parts of the forces.
-inline Vector3 ContactRows::turned_displacement(const TissueView& tissue, const ContactSamples& samples,
-                                                int i) noexcept {
+/// The displacement of the point of row i by the redirected parts of the forces.
+inline Vector3 ContactRows::redirected_displacement(const TissueView& tissue, const ContactSamples& samples,
+                                                    int i) noexcept {
   Vector3 displacement = Vector3::Zero();
   const int p = candidate_[at(i)]->slot;
   for (int j = 0; j < count_; ++j) {
     if (rows_[at(j)].force == 0.0) continue;
     const int q = candidate_[at(j)]->slot;
     if (p >= q)
-      displacement.noalias() += compliance_(tissue, samples, p, q) * turned_[at(j)];
+      displacement.noalias() += compliance_(tissue, samples, p, q) * redirected_[at(j)];
     else
-      displacement.noalias() += compliance_(tissue, samples, q, p).transpose() * turned_[at(j)];
+      displacement.noalias() += compliance_(tissue, samples, q, p).transpose() * redirected_[at(j)];
   }
   return displacement;
 }
 
-/// The turned forces move points and proxies, and that turns the normals further. With the ratio of the two changes, an
-/// average over the rows, the turns are extrapolated to where they stay.
+/// The redirected forces move points and proxies, and that turns the normals further. With the ratio of the two
+/// changes, an average over the rows, the turns are extrapolated to where they stay.
 PALPATE_INLINE bool ContactRows::follow_normals(const TissueView& tissue, const ContactSamples& samples,
                                                 std::span<const ContactTool> tools) noexcept {
   const auto path = [&](const ContactTool& tool, int i) -> Vector3 {
-    return (tool.total_compliance() + floor_) * turned_of_tool_[at(rows_[at(i)].tool)] + path_[at(i)];
+    return (tool.total_compliance() + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + path_[at(i)];
   };
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < count_; ++i) {
     const ContactTool& tool = tools[at(rows_[at(i)].tool)];
-    path_[at(i)] = turned_displacement(tissue, samples, i);
+    path_[at(i)] = redirected_displacement(tissue, samples, i);
     if (rows_[at(i)].force == 0.0) continue;
-    back += turned_[at(i)].dot(path(tool, i)) / tool.radius;
-    changed += turned_[at(i)].squaredNorm() / rows_[at(i)].force;
+    back += redirected_[at(i)].dot(path(tool, i)) / tool.radius;
+    changed += redirected_[at(i)].squaredNorm() / rows_[at(i)].force;
   }
   const double ratio = changed > 0.0 ? std::clamp(back / changed, 0.0, 0.75) : 0.0;
   const double factor = 1.0 / (1.0 - ratio);
