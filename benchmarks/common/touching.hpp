@@ -136,8 +136,8 @@ class Touching {
 struct TickTimes {
   double p50 = 0.0, p99 = 0.0;
 };
-/// Wall times of single ticks with warm caches. The clock of the processor time costs as much as a tick on some virtual
-/// machines, and in batches of ticks one interrupt of the system would count for all of them.
+/// Wall times of single ticks with warm caches. Reading the processor time takes as long as a tick on some virtual
+/// machines, and in a batch of ticks one interrupt would count for all of them.
 inline TickTimes hot_ticks(Touching& body, int ticks = 20000) {
   for (int i = 0; i < 200; ++i) body.tick();
   std::vector<double> times;

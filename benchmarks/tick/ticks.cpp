@@ -30,8 +30,8 @@ std::vector<double> cold_times(Work&& work) {
   return times;
 }
 
-/// The 99th percentile of wall times of arithmetic without memory accesses or branches whose median is about `median`
-/// [s]: the part of the machine and its system.
+/// The 99th percentile [s] of the wall times of arithmetic without memory accesses, whose median is about `median`:
+/// shows whether interrupts affect that percentile.
 double machine_p99(double median) {
   const auto work = [](int steps) {
     double x = 1.0;
@@ -61,7 +61,7 @@ void measure_hot(bench::RowFile& rows, bench::Touching& body) {
   rows.add({.target = "i",
             .what = "hot tick, " + std::to_string(body.pressing()) + " contacts, p99",
             .figure = bench::microseconds(hot.p99) + " (p50 " + bench::microseconds(hot.p50) +
-                      "; of arithmetic as long, p99 " + bench::microseconds(machine_p99(hot.p50)) + ")",
+                      "; p99 of arithmetic of that length " + bench::microseconds(machine_p99(hot.p50)) + ")",
             .baseline = "5 us",
             .ratio = hot.p99 / 5e-6,
             .bound = bench::at_most(1.0),

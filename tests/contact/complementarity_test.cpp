@@ -212,8 +212,7 @@ TEST_CASE("any initial value gives the same solution", "[contact][complementarit
 TEST_CASE("rows that are added to a solution give the solution of all rows, and gaps are those of the forces",
           "[contact][complementarity]") {
   testing::Random random(57);
-  double worst = 0.0, worst_gap = 0.0;
-  int unsolved = 0;
+  int unsolved = 0, different = 0, wrong_gaps = 0;
   for (int round = 0; round < 200; ++round) {
     const Case c = random_case(random, 24, 2.0);
     Problem whole, grown;
@@ -229,13 +228,13 @@ TEST_CASE("rows that are added to a solution give the solution of all rows, and 
       unsolved += !grown.solve_added(first);
       first = rows;
     }
-    worst = std::max(worst, (grown.forces() - whole.forces()).norm() / whole.forces().norm());
+    different += !((grown.forces() - whole.forces()).norm() < 1e-9 * whole.forces().norm());
     const VectorX gap = c.b + c.w * grown.forces();
-    for (int i = 0; i < 24; ++i) worst_gap = std::max(worst_gap, std::abs(grown.gap(i) - gap[i]));
+    for (int i = 0; i < 24; ++i) wrong_gaps += !(std::abs(grown.gap(i) - gap[i]) < 1e-12);
   }
   CHECK(unsolved == 0);
-  CHECK(worst < 1e-9);
-  CHECK(worst_gap < 1e-12);
+  CHECK(different == 0);
+  CHECK(wrong_gaps == 0);
 }
 
 TEST_CASE("without penetration there is no force", "[contact][complementarity]") {

@@ -96,7 +96,7 @@ class ContactProblem {
   inline bool may_have_row(const Candidate& c) const noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
-  void follow_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
+  void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
   void add_model_errors(const ContactSurface& surface, std::size_t t, const ContactTool& tool,

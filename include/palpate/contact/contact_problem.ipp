@@ -307,7 +307,7 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
     rows_.build(tissue, candidates_.samples(), tools, floor_, built);
     if (!rows_.solve(built)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
-    if (iteration == 0 && built == 0) follow_normals(tissue, tools, status);
+    if (iteration == 0 && built == 0) correct_normals(tissue, tools, status);
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
     if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
@@ -317,13 +317,13 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
 
 /// Where normals at the solution differ so much from those of the linearisation that another one would follow: they are
 /// corrected at a fraction of its cost. Points that move on their facets need that other linearisation.
-PALPATE_INLINE void ContactProblem::follow_normals(const TissueView& tissue, Tools tools, Status& status) noexcept {
+PALPATE_INLINE void ContactProblem::correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept {
   if (rows_.has_moving() || first_change_safety * proxies_.relative_change(tools) <= parameters_.force_tolerance)
     return;
   for (int k = 0; k < most_corrections; ++k) {
     const double estimate = estimate_safety * rows_.remaining_change(tools);
     if (estimate <= parameters_.force_tolerance || !(estimate <= largest_correction)) return;
-    if (!rows_.follow_normals(tissue, candidates_.samples(), tools)) status.set(StatusFlag::solver_not_converged);
+    if (!rows_.correct_normals(tissue, candidates_.samples(), tools)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tools, displacement_);
   }
 }

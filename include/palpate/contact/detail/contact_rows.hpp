@@ -83,8 +83,8 @@ class ContactRows {
   /// A step from the solution with the same W, as in a chord method, after `remaining_change`, where that is finite:
   /// forces act along the normals at the solution, and gaps are distances there. `apply` must follow. False when the
   /// iteration was stopped early. No allocation; O(rows^2).
-  bool follow_normals(const TissueView& tissue, const ContactSamples& samples,
-                      std::span<const ContactTool> tools) noexcept;
+  bool correct_normals(const TissueView& tissue, const ContactSamples& samples,
+                       std::span<const ContactTool> tools) noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.
   void stick(std::span<const ContactTool> tools) noexcept;
@@ -126,10 +126,9 @@ class ContactRows {
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;
   std::vector<Vector3> response_;
-  std::vector<Vector3>
-      redirected_;              // by remaining_change: change of a row's force when its normal follows the solution
-  std::vector<Vector3> path_;   // by follow_normals: displacement of a row's point by the redirected parts
-  std::vector<Vector3> shift_;  // displacement of a row's point by the forces redirected since `build`
+  std::vector<Vector3> redirected_;       // by remaining_change: change of a row's force by its new normal
+  std::vector<Vector3> redirected_path_;  // by correct_normals: displacement of a row's point by the redirected parts
+  std::vector<Vector3> shift_;            // displacement of a row's point by the forces redirected since `build`
   std::array<Vector3, maximum_tools> redirected_of_tool_{};
   double remaining_change_ = -1.0;  // negative: not known
   bool has_moving_ = false;

@@ -21,7 +21,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       candidate_(at(capacity)),
       response_(problem_.stride() * at(capacity)),
       redirected_(at(capacity)),
-      path_(at(capacity)),
+      redirected_path_(at(capacity)),
       shift_(at(capacity)),
       vertices_(3 * at(capacity)),
       slot_(at(vertices), -1) {}
@@ -383,19 +383,19 @@ inline Vector3 ContactRows::redirected_displacement(const TissueView& tissue, co
   return displacement;
 }
 
-/// The redirected forces move points and proxies, and that turns the normals further. With the ratio of the two
-/// changes, an average over the rows, the turns are extrapolated to where they stay.
-PALPATE_INLINE bool ContactRows::follow_normals(const TissueView& tissue, const ContactSamples& samples,
-                                                std::span<const ContactTool> tools) noexcept {
-  const auto path = [&](const ContactTool& tool, int i) -> Vector3 {
-    return (tool.total_compliance() + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + path_[at(i)];
+/// The redirected forces move points and proxies, which rotates the normals further. The ratio of the two rotations,
+/// averaged over the rows, extrapolates the normals to their fixed point.
+PALPATE_INLINE bool ContactRows::correct_normals(const TissueView& tissue, const ContactSamples& samples,
+                                                 std::span<const ContactTool> tools) noexcept {
+  const auto relative_path = [&](const ContactTool& tool, int i) -> Vector3 {
+    return (tool.total_compliance() + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + redirected_path_[at(i)];
   };
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < count_; ++i) {
     const ContactTool& tool = tools[at(rows_[at(i)].tool)];
-    path_[at(i)] = redirected_displacement(tissue, samples, i);
+    redirected_path_[at(i)] = redirected_displacement(tissue, samples, i);
     if (rows_[at(i)].force == 0.0) continue;
-    back += redirected_[at(i)].dot(path(tool, i)) / tool.radius;
+    back += redirected_[at(i)].dot(relative_path(tool, i)) / tool.radius;
     changed += redirected_[at(i)].squaredNorm() / rows_[at(i)].force;
   }
   const double ratio = changed > 0.0 ? std::clamp(back / changed, 0.0, 0.75) : 0.0;
@@ -404,8 +404,8 @@ PALPATE_INLINE bool ContactRows::follow_normals(const TissueView& tissue, const 
     Contact& row = rows_[at(i)];
     const ContactTool& tool = tools[at(row.tool)];
     const Vector3 arm = tool.goal(floor_) - row.point;
-    problem_.b[at(i)] += (arm + factor * path(tool, i)).norm() - tool.radius - problem_.gap(i);
-    shift_[at(i)] += factor * path_[at(i)];
+    problem_.b[at(i)] += (arm + factor * relative_path(tool, i)).norm() - tool.radius - problem_.gap(i);
+    shift_[at(i)] += factor * redirected_path_[at(i)];
     row.normal = (row.normal + factor * (arm.normalized() - row.normal)).normalized();
     row.arm = -tool.radius * row.normal;
     candidate_[at(i)]->history.used = row.normal;

@@ -33,14 +33,18 @@ class PointCompliance {
                                                   int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
     const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
-    if (known_[i] != version) compute(tissue, samples, p, q);
+    if (known_[i] != version) {
+      known_[i] = version;
+      compute(tissue, samples, p, q, block_[i]);
+    }
     return block_[i];
   }
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   int take(int sample) noexcept;
-  void compute(const TissueView& tissue, const ContactSamples& samples, int p, int q) noexcept;
+  /// Out of line, so that the look-up is inlined.
+  void compute(const TissueView& tissue, const ContactSamples& samples, int p, int q, Matrix3& block) const noexcept;
   const ContactSample& point(const ContactSamples& samples, int slot) const noexcept {
     return sample_[at(slot)] < samples.count() ? samples[sample_[at(slot)]] : moving_[at(slot)];
   }

@@ -45,11 +45,9 @@ PALPATE_INLINE void PointCompliance::move(int slot, const ContactSample& point) 
   version_[at(slot)] = ++versions_ & 0xffffffffu;
 }
 
-PALPATE_INLINE void PointCompliance::compute(const TissueView& tissue, const ContactSamples& samples, int p,
-                                             int q) noexcept {
-  const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
-  known_[i] = version_[at(p)] << 32 | version_[at(q)];
-  tissue.between(point(samples, p), point(samples, q), block_[i]);
+PALPATE_INLINE void PointCompliance::compute(const TissueView& tissue, const ContactSamples& samples, int p, int q,
+                                             Matrix3& block) const noexcept {
+  tissue.between(point(samples, p), point(samples, q), block);
 }
 
 PALPATE_INLINE int PointCompliance::take(int sample) noexcept {
