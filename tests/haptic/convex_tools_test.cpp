@@ -10,7 +10,9 @@
 
 #include "refused.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace palpate;
 using test::pad_height;
@@ -95,7 +97,8 @@ TEST_CASE("the forces of a convex tool on the tissue and on the tool are in equi
   options.contact.friction = 0.3;
   HapticServo servo(pad, block(), options);
   ToolState state;
-  double worst = 0.0, worst_moment = 0.0;
+  double worst = 0.0;
+  std::vector<double> moments;
   for (int k = 0; k < 500; ++k) {
     state.time = 1e-3 * k;
     state.position = {0.015 + 5e-6 * std::max(0, k - 200), 0.015, pad_height + 4e-3 - 1e-5 * std::min(k, 200)};
@@ -109,12 +112,16 @@ TEST_CASE("the forces of a convex tool on the tissue and on the tool are in equi
       moment -= Vector3(c.point - servo.proxy()).cross(total);
     }
     worst = std::max({worst, sum.norm(), (by_contacts - servo.contact_force()).norm()});
-    worst_moment = std::max(worst_moment, moment.norm());
+    moments.push_back(moment.norm());
   }
+  const double force = servo.contact_force().norm();
   CHECK(servo.contact_force()[2] > 0.05);
-  CHECK(worst <= 1e-9 * servo.contact_force().norm());
-  // The arms are those of the last linearisation: micrometres from the contact points.
-  CHECK(worst_moment <= 5e-5 * servo.contact_force().norm());
+  CHECK(worst <= 1e-9 * force);
+  // The arms are those of the last linearisation: micrometres from the contact points, more in a tick in which points
+  // begin or cease to press.
+  std::sort(moments.begin(), moments.end());
+  CHECK(moments[495] <= 5e-6 * force);
+  CHECK(moments.back() <= 5e-4 * force);
 }
 
 TEST_CASE("a convex tool that appears inside the body is placed outside of it", "[haptic][servo][convex]") {

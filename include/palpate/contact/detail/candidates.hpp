@@ -3,47 +3,11 @@
 
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/detail/bvh.hpp>
+#include <palpate/contact/detail/candidate_list.hpp>
 #include <palpate/contact/detail/coarse_facets.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// Normals of a row in the last linearisation and the one before: those used, and those that resulted.
-struct NormalHistory {
-  Vector3 used = Vector3::Zero(), used_before = Vector3::Zero(), made_before = Vector3::Zero();
-  int known = 0;  ///< number of consecutive linearisations, at most 2
-};
-
-/// A contact point near the sphere of one tool, as of its last evaluation.
-struct Candidate {
-  int sample = 0;  ///< from the number of samples on: a point that moves, see Candidates
-  int triangle = 0;
-  int tool = 0;
-  int row = -1;                      ///< of the contact problem, -1 when it has none
-  int slot = -1;                     ///< slot of its compliance in the last use
-  bool facing = true;                ///< the sphere is on the outer side
-  bool evaluated = true;             ///< false: only a lower bound of the gap is known
-  double gap = 0.0;                  ///< [m]
-  double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
-  double force = 0.0;                ///< of the last solution [N]
-  Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
-  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the closest point of the tool's core
-  Vector3 core = Vector3::Zero();    ///< that point, in the tool's own frame [m]; zero for a sphere
-  NormalHistory history;
-
-  Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]
-  Vector3 anchor = Vector3::Zero();    ///< stick anchor on the tool after the last tick, tool's own frame [m]
-  std::uint64_t stuck_tick = 0;        ///< the tick after which it stuck
-  bool grasped = false;                ///< a grasped point, not one found near a sphere
-  ContactSample moving{};              ///< where a point that moves is
-
-  /// Removes its force, friction and history.
-  void lift() noexcept {
-    force = 0.0;
-    stuck_tick = 0;
-    history.known = 0;
-  }
-};
 
 /// All contact points that a sphere can reach within a tick, and some more, so that the list stays valid for a while:
 /// the path of sphere and surface since then is accumulated, and the list is rebuilt when the margin is used up (as
@@ -64,7 +28,7 @@ class Candidates {
   Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity, bool local);
 
   /// Largest number of points in the list.
-  int maximum() const noexcept { return static_cast<int>(list_.items.size()); }
+  int maximum() const noexcept { return list_.points.maximum(); }
   const ContactSamples& samples() const noexcept { return samples_; }
   const CoarseFacets& facets() const noexcept { return facets_; }
   bool is_moving(const Candidate& c) const noexcept { return c.sample >= samples_.count(); }
@@ -72,7 +36,7 @@ class Candidates {
   const ContactSample& sample_of(const Candidate& c) const noexcept {
     return is_moving(c) ? c.moving : samples_[c.sample];
   }
-  std::span<Candidate> items() noexcept { return {list_.items.data(), static_cast<std::size_t>(list_.count)}; }
+  std::span<Candidate> items() noexcept { return list_.points.items(); }
   bool has_any(int tool) const noexcept;
   void forget() noexcept { valid_ = false; }
   /// Back to the state after construction.
@@ -156,8 +120,8 @@ class Candidates {
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
   struct List {
-    std::vector<Candidate> items;
-    int count = 0, room = 0, kept = 0;                   // kept: points that press, before the others
+    CandidateList points;
+    int room = 0, kept = 0;                              // kept: points that press, before the others
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
     double reach = 0.0;                                  // of the surface, least in the search
     double surface_built = 0.0;                          // travel of the surface when the search began
@@ -169,6 +133,7 @@ class Candidates {
     int leaves = 0;      // visited
     double reach = 0.0;  // of the surface at present
     bool runs = false, ends = false;
+    bool in_parts = false;  // while the list before is valid
   };
   double used(const List& list, std::span<const ContactTool> tools) const noexcept;
   void begin(Search& search, List& list, int room) const noexcept;
@@ -179,14 +144,9 @@ class Candidates {
   void store_loaded() noexcept;
   void keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                    SurfaceDisplacement& displacement) noexcept;
-  static std::uint64_t key(int tool, int sample) noexcept {
-    return static_cast<std::uint64_t>(sample) * maximum_tools + static_cast<std::uint64_t>(tool);
-  }
-  bool is_loaded(int tool, int sample) const noexcept;
+  inline double known_gap(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;
-  inline static double least_gap(const ContactSurface& surface, const ContactTool& tool, const ContactSample& sample,
-                                 const Search& search) noexcept;
   void consider(const TissueView& tissue, const ContactTool& tool, Candidate& c, const Search& search, List& list,
                 SurfaceDisplacement& displacement) noexcept;
 
@@ -194,10 +154,9 @@ class Candidates {
   ContactSamples samples_;
   CoarseFacets facets_;
   List list_, next_list_;
-  Search search_;                           // for the next list, or for one that is built at once
-  int leaves_ = 0;                          // visited for the list
-  std::vector<Candidate> loaded_;           // points of the list before that press
-  std::vector<std::uint64_t> loaded_keys_;  // of their tools and samples, sorted
+  Search search_;                  // for the next list, or for one that is built at once
+  int leaves_ = 0;                 // visited for the list
+  std::vector<Candidate> loaded_;  // points of the list before that press
   int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
@@ -218,4 +177,5 @@ class Candidates {
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/candidates.ipp>
+#include <palpate/contact/detail/candidates_search.ipp>
 #endif

@@ -1,0 +1,144 @@
+// Definitions of contact_rows.hpp: friction.
+#pragma once
+
+#include <palpate/contact/coulomb_friction.ipp>  // inline functions, as of the next
+#include <palpate/contact/detail/candidates.ipp>
+#include <palpate/contact/detail/contact_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+inline bool ContactRows::sticks(const Candidate& c) const noexcept {
+  return c.stuck_tick != 0 && c.stuck_tick + 1 == tick_;
+}
+
+/// Whether a point that moves continues another on the next facet: it takes the friction force too.
+inline bool ContactRows::takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept {
+  constexpr double same_direction = 0.98;
+  return candidates.is_moving(c) && candidates.is_moving(other) && other.normal.dot(c.normal) >= same_direction;
+}
+
+PALPATE_INLINE void ContactRows::inherit_friction(const ContactSurface& surface, const Candidates& candidates,
+                                                  const ContactTool& tool, Candidate& c) const noexcept {
+  if (!friction_.acts() || sticks(c)) return;
+  const Candidate* nearest = nullptr;
+  for (int i = 0; i < count_; ++i) {
+    const Candidate& other = *candidate_[at(i)];
+    if (other.tool != c.tool || other.grasped || !sticks(other)) continue;
+    if (takes_over(candidates, other, c)) {
+      const Vector3 path = candidates.rest(surface, c.moving) - candidates.rest(surface, other.moving);
+      c.anchor = other.anchor + tool.rotation.transpose() * path;
+      c.friction = other.friction;
+      c.stuck_tick = other.stuck_tick;
+      return;
+    }
+    if (nearest == nullptr || (other.point - c.point).squaredNorm() < (nearest->point - c.point).squaredNorm())
+      nearest = &other;
+  }
+  if (nearest == nullptr) return;
+  c.anchor = nearest->anchor + tool.rotation.transpose() * (c.point - nearest->point);
+  c.friction.setZero();
+  c.stuck_tick = nearest->stuck_tick;
+}
+
+/// Displacement of the tool at one arm per force at another, by its rotation.
+inline Matrix3 ContactRows::rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
+                                                  const Vector3& by_arm) noexcept {
+  Matrix3 displacement;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      displacement(r, c) = tool.rotational_compliance * ((r == c ? at_arm.dot(by_arm) : 0.0) - by_arm[r] * at_arm[c]);
+  return displacement;
+}
+
+/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::displacement
+/// is the tissue's.
+inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
+  return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
+}
+
+/// Row i of the input of CoulombFriction.
+PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const ContactSamples& samples,
+                                                const ContactTool& tool, int i) noexcept {
+  const Candidate& c = *candidate_[at(i)];
+  const Contact& ci = rows_[at(i)];
+  const bool rotates = tool.rotational_compliance > 0.0;
+  const double compliance = tool.total_compliance() + floor_;
+  const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
+  friction_.set(i, ci.normal, drift, c.friction, !c.grasped && sticks(c));
+  for (int j = 0; j <= i; ++j) {
+    const Contact& cj = rows_[at(j)];
+    const bool same = ci.tool == cj.tool;
+    const int p = c.slot, q = candidate_[at(j)]->slot;
+    const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
+    Matrix3 sum;
+    if (same && rotates) {
+      sum = *between +
+            (p >= q ? rotational_compliance(tool, ci.arm, cj.arm) : rotational_compliance(tool, cj.arm, ci.arm));
+      between = &sum;
+    }
+    friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);
+  }
+}
+
+/// Gaps without normal forces, with the present friction forces.
+inline void ContactRows::update_gaps() noexcept {
+  for (int i = 0; i < count_; ++i) problem_.b[at(i)] = free_gap_[at(i)] + friction_.normal_displacement(i);
+}
+
+PALPATE_INLINE bool ContactRows::slide() noexcept {
+  const int most = std::clamp(alternation_work / (count_ * count_), least_alternations, maximum_alternations);
+  bool solved = true;
+  std::copy_n(problem_.lambda.begin(), count_, pressed_.begin());
+  for (int k = 0; k < most; ++k) {
+    const bool friction_changed = friction_.improve();
+    update_gaps();
+    solved = problem_.solve_again();
+    const double part = k < full_alternations ? 1.0 : 0.5;
+    double change = 0.0, largest = 0.0;
+    for (int i = 0; i < count_; ++i) {
+      const double force = problem_.lambda[at(i)], own = force - pressed_[at(i)];
+      change = std::max(change, std::abs(own));
+      largest = std::max(largest, std::abs(force));
+      pressed_[at(i)] += part * own;
+    }
+    friction_.press(pressed_.data());
+    alternation_change_ = largest > 0.0 ? change / largest : 0.0;
+    if (!friction_changed && !(alternation_change_ > alternation_tolerance)) break;
+  }
+  friction_.press(problem_.lambda.data());
+  return solved;
+}
+
+PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) const noexcept {
+  for (ContactTool& tool : tools) {
+    tool.friction_displacement.setZero();
+    tool.friction_rotation.setZero();
+  }
+  for (int j = 0; j < count_; ++j) {
+    const Contact& row = rows_[at(j)];
+    ContactTool& tool = tools[at(row.tool)];
+    const Vector3 friction = friction_.force(j);
+    tool.friction_displacement += (tool.total_compliance() + floor_) * friction;
+    tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction);
+  }
+}
+
+PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {
+  // A tick converges to a tolerance: a point that slips may end slightly within its disc. With its old anchor it would
+  // stick in the next tick. A point that sticks so close to slipping loses nothing by a new anchor.
+  constexpr double slipping = 0.99;
+  if (!friction_.acts()) return;
+  for (int i = 0; i < count_; ++i) {
+    Candidate& c = *candidate_[at(i)];
+    if (c.grasped || !(c.force > 0.0)) continue;
+    const bool kept = sticks(c) && c.friction.norm() < slipping * friction_.coefficient() * c.force;
+    const ContactTool& tool = tools[at(c.tool)];
+    if (!kept) c.anchor = tool.rotation.transpose() * (rows_[at(i)].point - tool.proxy);
+    c.stuck_tick = tick_;
+  }
+}
+
+}}  // namespace palpate
