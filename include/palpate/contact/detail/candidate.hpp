@@ -22,7 +22,7 @@ struct Candidate {
   int row = -1;                      ///< of the contact problem, -1 when it has none
   int slot = -1;                     ///< slot of its compliance in the last use
   bool facing = true;                ///< the sphere is on the outer side
-  bool evaluated = true;             ///< false: only a lower bound of the gap is known
+  bool evaluated = true;             ///< false: of gap, point, normal and core only a lower bound of the gap is known
   double gap = 0.0;                  ///< [m]
   double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
   double force = 0.0;                ///< of the last solution [N]

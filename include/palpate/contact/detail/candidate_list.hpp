@@ -12,7 +12,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Up to `maximum` candidates in an array, with a hash table of their tools and samples (separate chaining). Nothing
-/// allocates after construction; every operation but `clear` takes constant time.
+/// allocates after construction. `clear` takes O(maximum), everything else constant time on average.
 class CandidateList {
  public:
   explicit CandidateList(std::size_t maximum) : items_(maximum), next_(maximum), first_(std::bit_ceil(maximum), -1) {}
@@ -30,6 +30,7 @@ class CandidateList {
   }
   /// The caller guarantees that there is room, and that no other candidate has this tool and sample.
   Candidate& add(const Candidate& c) noexcept { return link(count_++, c); }
+  /// Puts a candidate in the place of number i. The same guarantee, but for number i itself.
   Candidate& replace(int i, const Candidate& c) noexcept {
     int* place = &first_[hash(items_[at(i)])];
     while (*place != i) place = &next_[at(*place)];

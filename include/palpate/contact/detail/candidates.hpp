@@ -123,8 +123,8 @@ class Candidates {
     CandidateList points;
     int room = 0, kept = 0;                              // kept: points that press, before the others
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
-    double reach = 0.0;                                  // of the surface, least in the search
-    double surface_built = 0.0;                          // travel of the surface when the search began
+    double reach = 0.0;                                  // of the surface when the search began
+    double surface_built = 0.0;                          // travel of the surface then
   };
   /// A search for the points of a list, tool by tool.
   struct Search {
@@ -133,7 +133,7 @@ class Candidates {
     int leaves = 0;      // visited
     double reach = 0.0;  // of the surface at present
     bool runs = false, ends = false;
-    bool in_parts = false;  // while the list before is valid
+    bool in_parts = false;  // one part per tick, while the present list is valid
   };
   double used(const List& list, std::span<const ContactTool> tools) const noexcept;
   void begin(Search& search, List& list, int room) const noexcept;

@@ -124,7 +124,6 @@ PALPATE_INLINE void Candidates::begin(Search& search, List& list, int room) cons
   list.points.clear();
   list.kept = 0;
   list.room = room;
-  list.reach = infinity;
   list.surface_built = surface_travel_;
 }
 
@@ -165,7 +164,7 @@ PALPATE_INLINE int Candidates::level_of(const ContactTool& tool) const noexcept 
 PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactTool& tool, int triangle,
                                         const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   const ContactSurface& surface = tissue.contact_surface();
-  const double touching = tool.radius + tool.core_radius() + search.reach;
+  const double touching = tool.radius + tool.core_radius() + search.reach;  // distance for a least gap of zero
   const double near = touching + list.range[search.tool];
   const auto squared_distance = [&](const ContactSample& sample) {
     return (expected_place(surface, sample) - tool.middle()).squaredNorm();
@@ -196,7 +195,7 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
   }
 }
 
-/// Lower bound of the present gap of a point by the present list; minus infinity where the list does not have it.
+/// Lower bound of the gap of a point of the present list; minus infinity for other points.
 inline double Candidates::known_gap(int tool, int sample) const noexcept {
   const int i = list_.points.find(tool, sample);
   return i < 0 ? -infinity : least_gap(list_.points[i]);
@@ -204,8 +203,8 @@ inline double Candidates::known_gap(int tool, int sample) const noexcept {
 
 /// Adds a point with its least gap to the list if it is near and not there yet. Far points are not evaluated: their
 /// displacement would cost more than the rest of the search, and the reach of the surface is a bound for it, unless
-/// that is large. Nor are points of the present list, where the next one is built in parts. When the list is full, it
-/// is complete only up to the nearest point left out. Points that press stay.
+/// that is large. Points of the present list are not evaluated either when the next one is built in parts: they keep
+/// their bounds. When the list is full, it is complete only up to the nearest point left out. Points that press stay.
 PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, Candidate& c,
                                          const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   CandidateList& points = list.points;

@@ -140,4 +140,6 @@ class ContactRows {
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/contact_rows.ipp>
+#include <palpate/contact/detail/contact_rows_friction.ipp>
+#include <palpate/contact/detail/contact_rows_normals.ipp>
 #endif

@@ -1,8 +1,8 @@
 // Definitions of contact_rows.hpp.
 #pragma once
 
-#include <palpate/contact/detail/contact_rows_friction.ipp>  // inline functions, as of the next
-#include <palpate/contact/detail/contact_rows_normals.ipp>
+#include <palpate/contact/detail/contact_rows.hpp>
+#include <palpate/contact/detail/contact_rows_friction.ipp>  // inline functions
 
 #include <algorithm>
 #include <cmath>
