@@ -136,6 +136,23 @@ TEST_CASE("a moving tissue passes the tissue law suite while it is cut", "[cut][
   CHECK_REFUSED(SetupErrorKind::index_out_of_range, tissue.cut(CutOrder{{1000000}, {}}));
 }
 
+TEST_CASE("a blade is the only tool on moving tissue", "[cut][moving][blade][extreme][F3]") {
+  using namespace one_session;
+  Smooth tissue(block(), constrained_block(), flesh, {}, {.inertia = false});
+  const int vertices = tissue.contact_surface().vertex_count();
+  HapticServo servo(tissue, BladeTool{.edge = {0.0, 0.04, 0.0}, .toughness = 40.0}, stiff_device());
+  for (int k = 0; k < 600; ++k) {
+    if (k % 16 == 15) tissue.advance();
+    ToolState state;
+    state.time = 1e-3 * k;
+    state.position = {0.0301, 0.01, 0.033 - 5e-5 * k};
+    REQUIRE(servo.tick(state).force().allFinite());
+  }
+  CHECK(tissue.cut_report().cuts > 1);
+  CHECK(tissue.contact_surface().vertex_count() > vertices);
+  CHECK(servo.blade()->area() > 1e-4);
+}
+
 TEST_CASE("burning and slitting under a tool: forces continue, and end as in a model of what is left",
           "[cut][moving][haptic][extreme][F3]") {
   using namespace one_session;

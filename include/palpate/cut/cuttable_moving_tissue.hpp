@@ -105,7 +105,8 @@ class CuttableMovingTissue : public MovingTissue {
   }
   /// Moves a session's contact to a new surface.
   void exchange_contacts(ContactProblem& problem) noexcept {
-    if (std::exchange(seen_, this->surface_number()) != seen_ && this->surface_contact() != nullptr)
+    const std::uint64_t before = std::exchange(seen_, this->surface_number());
+    if (seen_ != before && this->surface_contact() != nullptr)
       problem.move_to(*this->surface_contact(), this->contact_surface());
   }
   /// Makes the contact surface for the tools of a session that begins; not while another session ticks.

@@ -17,27 +17,26 @@ namespace detail {
 
 inline constexpr double flagged_error = 0.1;  // of the force
 
-inline bool is_sphere(const ContactTool& tool) noexcept {
-  return tool.radius < no_sphere;
-}
 inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   ToolRadii radii(no_sphere, 0.0);
   for (const ContactTool& tool : tools) {
     radii.smallest = std::min(radii.smallest, tool.radius);
-    if (is_sphere(tool)) radii.largest = std::max(radii.largest, tool.radius);
+    if (tool.radius < no_sphere) radii.largest = std::max(radii.largest, tool.radius);
   }
   return radii;
-}
-/// The surface of a tissue after it was prepared for these tools.
-inline const ContactSurface& surface_for(TissueView& tissue, const std::vector<ContactTool>& tools,
-                                         const ContactParameters& contact) {
-  if (std::any_of(tools.begin(), tools.end(), is_sphere)) tissue.prepare_tools(radii_of(tools), contact);
-  return tissue.contact_surface();
 }
 /// The local compliance needs materials that belong to the tissue's compliance.
 inline ContactParameters contact_parameters(const TissueView& tissue, ContactParameters parameters) noexcept {
   parameters.local_compliance = parameters.local_compliance && tissue.has_contact_materials();
   return parameters;
+}
+/// A contact problem on the surface of a tissue, which is prepared for it. Also where all tools are blades: tissue that
+/// is cut then makes contact problems like this one, with room for the vertices that a cut adds.
+inline ContactProblem prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
+                                       const ContactParameters& contact) {
+  const ContactParameters parameters = contact_parameters(tissue, contact);
+  tissue.prepare_tools(radii_of(tools), parameters);
+  return {tissue.contact_surface(), radii_of(tools), parameters};
 }
 inline ToolState unreadable() noexcept {
   ToolState s;
@@ -55,9 +54,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
     : tissue_(tissue),
       tools_(tools),
       contact_tools_(make_contact_tools(tools_, options)),
-      problem_(detail::surface_for(tissue_, contact_tools_, options.contact.for_tools(tools.size())),
-               detail::radii_of(contact_tools_),
-               detail::contact_parameters(tissue_, options.contact.for_tools(tools.size()))),
+      problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact.for_tools(tools.size()))),
       coarse_facets_(report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
       energies_(std::move(energies)),
       forces_(tools.size()),
