@@ -42,14 +42,15 @@ void step_to_rest(Model& model) {
   CHECK(done.status.ok());
   CHECK(done.relative_residual <= 1e-6);
 }
-/// Largest difference of a cut tissue from a model of its supported elements alone, relative to the displacement [m].
+/// Largest difference of a cut tissue from a model of its supported elements alone with these loads, relative to the
+/// displacement [m].
 template <class E>
-double difference_from_remains(CutMoving<E>& tissue) {
+double difference_from_remains(CutMoving<E>& tissue, Scene scene = Scene().gravity(weight)) {
   std::vector<NodeId> node_map;
   std::vector<Index> element_map;
   Mesh<E> remains;
   tissue.read([&](const CutTopology<E>& t) { remains = t.extract(ElementState::supported, node_map, element_map); });
-  const Scene scene = Scene().fix("x0").touch("x1").gravity(weight);
+  scene.fix("x0").touch("x1");
   const auto alone = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
                          make_hyperelastic_body(remains, std::vector{flesh}), scene, exact_parameters(), {})
                          .motion;
@@ -108,6 +109,41 @@ TEMPLATE_TEST_CASE("after cuts a moving tissue rests like a model of what is lef
   step_to_rest(tissue);
   CHECK(tissue.displacement().size() == 3 * tissue.mesh().node_count());
   CHECK(difference_from_remains(tissue) <= 1e-5);
+}
+
+TEMPLATE_TEST_CASE("after cuts all loads act on what is left", "[cut][moving]", Tet4, Smoothed<Tet4>, Tet10) {
+  const auto [name, loads] = GENERATE(table<std::string, Scene>(
+      {{"body load", Scene().body_load(everywhere, {0.0, 0.0, -1000.0})},
+       {"traction", Scene().traction("z1", {0.0, 0.0, -40.0})},
+       {"pressure", Scene().pressure("z1", 40.0)},
+       {"all with weight", Scene().gravity(weight).pressure("z1", 20.0).traction("x1", {0.0, 1.0, 0.0})}}));
+  INFO(name);
+  Scene scene = loads;
+  scene.fix("x0").touch("z1");
+  CutMoving<TestType> tissue(steak<TestType>(), scene, flesh, {}, exact_parameters());
+  step_to_rest(tissue);
+  CHECK(difference_from_remains(tissue, loads) <= 1e-5);
+  SECTION("a notch") {
+    tissue.cut(CutOrder{elements_in(tissue, {0.02, -1, 0.02}, {0.05, 1, 1}), {}});
+  }
+  SECTION("a slit from above") {
+    tissue.cut(BladeSweep{{0.045, -1, 0.5}, {0.045, 1, 0.5}, {0.045, -1, 0.012}, {0.045, 1, 0.012}});
+  }
+  SECTION("split lengthwise") {
+    tissue.cut(BladeSweep{{-1, 0.0201, 0.5}, {-1, 0.0201, -0.5}, {1, 0.0201, 0.5}, {1, 0.0201, -0.5}});
+  }
+  step_to_rest(tissue);
+  CHECK(tissue.cut_report().cuts == 1);
+  CHECK(difference_from_remains(tissue, loads) <= 1e-5);
+  tissue.set_conditions(Scene(scene).traction("z1", {0.0, 0.0, 10.0}));
+  step_to_rest(tissue);
+  CHECK(difference_from_remains(tissue, Scene(loads).traction("z1", {0.0, 0.0, 10.0})) <= 1e-5);
+  tissue.cut(CutOrder{elements_in(tissue, {0.06, -1, 0.02}, {0.081, 1, 1}), {}});  // the loads in force, not the first
+  step_to_rest(tissue);
+  CHECK(difference_from_remains(tissue, Scene(loads).traction("z1", {0.0, 0.0, 10.0})) <= 1e-5);
+  tissue.reset();
+  step_to_rest(tissue);
+  CHECK(difference_from_remains(tissue, loads) <= 1e-5);
 }
 
 TEST_CASE("a moving tissue passes the tissue law suite while it is cut", "[cut][moving]") {

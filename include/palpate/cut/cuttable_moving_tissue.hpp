@@ -10,8 +10,10 @@
 #include <palpate/cut/detail/cut_surface.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
+#include <palpate/cut/detail/element_loads.hpp>
 #include <palpate/cut/detail/slit_sides.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/moving/moving_tissue.hpp>
 
 #include <algorithm>
@@ -160,6 +162,20 @@ class CuttableMovingTissue : public MovingTissue {
     ContactParameters contact{};
   };
 
+  /// An element takes its loads with it; copies of a node carry the loads of their elements.
+  VectorX applied_load(const Scene& scene) const override {
+    const auto& whole = detail::element_body<E>(this->elastic_body());
+    const ElementLoads<E> loads(whole.body().mesh, whole.boundary(), scene);
+    const CutTopology<E>& topology = body_->topology;
+    VectorX sum = VectorX::Zero(3 * topology.mesh().node_count());
+    sum.head(loads.nodal_load.size()) = loads.nodal_load;
+    for (Index e = 0; e < topology.mesh().element_count(); ++e)
+      if (topology.state(e) == ElementState::supported)
+        for (int a = 0; a < E::nodes; ++a)
+          add_node_vector(sum, Index{topology.mesh().element_node(e, a)},
+                          Vector3(loads.load[static_cast<std::size_t>(e)].row(a).transpose()));
+    return sum;
+  }
   void prepare_step() noexcept override {
     const CutOrders::Taken taken = orders_.take();
     if (taken.count == 0) return;

@@ -148,8 +148,11 @@ class MovingTissue : public ModelBase {
   };
   /// Called by `advance` before every step, with the changes locked out.
   virtual void prepare_step() noexcept {}
+  /// Loads of a scene of the admitted mesh on the present body, without gravity, 3 per node [N]. Throws as the loads
+  /// of a scene.
+  virtual VectorX applied_load(const Scene& scene) const;
   /// Continues on another surface of the motion's body, which has changed; `mass` per node, `pattern` and `positions`
-  /// of all its nodes. Loads stay on the nodes that they had. From `prepare_step`. Allocates.
+  /// of all its nodes. Loads become those of the scene on this body. From `prepare_step`. Allocates.
   void change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
                       const std::vector<Vector3>& positions);
   /// Loads the scene's conditions and rests at the start, for the body of the set-up.
@@ -224,7 +227,8 @@ class MovingTissue : public ModelBase {
   NodalRotations rotations_;
   VectorX start_, start_load_, start_prescribed_;
   VectorX mass_;            // per node [kg]
-  VectorX applied_, load_;  // of the scene without and with gravity [N]
+  Scene loaded_;            // the last scene set; its gravity is not used
+  VectorX applied_, load_;  // of that scene without and with gravity [N]
   VectorX full_;
   VectorX response_;  // of a body that is cut
   VertexCompliance compliance_;

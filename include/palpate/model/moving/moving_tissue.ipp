@@ -17,18 +17,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<MovingTissue>);
 
-namespace detail {
-
-/// The vector with zeros for further entries, or without its last entries.
-PALPATE_INLINE VectorX with_size(const VectorX& given, Index size) {
-  VectorX made = VectorX::Zero(size);
-  const Index common = std::min(size, given.size());
-  made.head(common) = given.head(common);
-  return made;
-}
-
-}  // namespace detail
-
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
     raise(SetupErrorKind::unsupported, "a cache file for moving tissue, which has nothing to store",
@@ -47,7 +35,8 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   const EssentialConditions conditions = elastic_body().conditions(scene());
   start_prescribed_ = conditions.prescribed;
   mass_ = elastic_body().nodal_mass();
-  applied_ = load_of(scene(), Vector3::Zero());
+  loaded_ = scene();
+  applied_ = load_of(loaded_, Vector3::Zero());
   load_ = start_load_ = load_of(scene(), gravity());
   full_ = start_load_;
   rotations_ = NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
@@ -161,7 +150,7 @@ PALPATE_INLINE void MovingTissue::record_response(Forces& part, const MotionStep
 PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
   const std::scoped_lock lock(changes_);
   const ScopedIdTranslation translation(original_ids());
-  const Scene mapped = this->mapped(scene, triangles_);
+  Scene mapped = this->mapped(scene, triangles_);
   const EssentialConditions changed = elastic_body().conditions(mapped);
   if (changed.constrained != elastic_body().conditions(this->scene()).constrained)
     raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
@@ -170,6 +159,7 @@ PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
   VectorX load = load_of(mapped, local(scene.gravity(), pose()));
   std::string others = mapped.loads_in_words();
   motion_->set_prescribed(changed.prescribed);
+  loaded_ = std::move(mapped);
   applied_.swap(applied);
   load_.swap(load);
   loads_changed_ = true;
@@ -201,8 +191,10 @@ PALPATE_INLINE void MovingTissue::reset() {
 }
 
 PALPATE_INLINE void MovingTissue::restart() {
-  VectorX applied = load_of(scene(), Vector3::Zero());
-  std::string others = scene().loads_in_words();
+  Scene loaded = scene();
+  VectorX applied = load_of(loaded, Vector3::Zero());
+  std::string others = loaded.loads_in_words();
+  loaded_ = std::move(loaded);
   applied_.swap(applied);
   load_ = start_load_;
   motion_->set_load(load_);
@@ -221,7 +213,7 @@ PALPATE_INLINE void MovingTissue::restart() {
 
 PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
                                                  const std::vector<Vector3>& positions) {
-  VectorX applied = detail::with_size(applied_, 3 * mass.size()), load = applied;
+  VectorX applied = applied_load(loaded_), load = applied;
   const Vector3 own = local(gravity(), pose());
   for (Index i = 0; i < mass.size(); ++i) add_node_vector(load, i, mass[i] * own);
   NodalRotations rotations(pattern, positions, surface.nodes);
@@ -323,16 +315,18 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) 
   pressing_.publish();
 }
 
+PALPATE_INLINE VectorX MovingTissue::applied_load(const Scene& scene) const {
+  return elastic_body().applied_load(scene);
+}
+
 PALPATE_INLINE VectorX MovingTissue::load_of(const Scene& scene, const Vector3& gravity) const {
-  const ElasticBody& body = elastic_body();
-  VectorX load = body.applied_load(scene);
+  VectorX load = applied_load(scene);
   if (!scene.initial_strains().empty()) {
     if (!accepts_initial_strains_)
       raise(SetupErrorKind::unsupported, "initial strains at large deformation or with viscoelasticity",
             "Use a linear material");
-    load += body.initial_strain_load(body.initial_strains(scene));
+    load += elastic_body().initial_strain_load(elastic_body().initial_strains(scene));
   }
-  load = detail::with_size(load, 3 * mass_.size());
   for (Index i = 0; i < mass_.size(); ++i) add_node_vector(load, i, mass_[i] * gravity);
   if (!all_finite(load)) raise(SetupErrorKind::non_finite, "the loads are not finite");
   return load;
