@@ -40,6 +40,10 @@ check address-contact "$undefined" "" contact/friction_test.cpp contact/capsule_
 check address-devices "$undefined" "" device/chai3d_test.cpp device/force_dimension_test.cpp device/openhaptics_test.cpp
 check address-faults "$undefined" "" haptic/faults_test.cpp
 check address-cut "$undefined" "" cut/cut_system_test.cpp cut/cuttable_tissue_test.cpp cut/leaving_elements_test.cpp
+for part in static moving cut; do
+  check address-compositions-$part "$undefined" "" extremes/compositions_${part}_test.cpp
+  check threads-compositions-$part "-fsanitize=thread" "" extremes/compositions_${part}_test.cpp
+done
 check threads-cut "-fsanitize=thread" "" cut/cuttable_tissue_test.cpp
 check threads "-fsanitize=thread" "" core/triple_buffer_test.cpp core/spsc_ring_test.cpp haptic/lifetimes_test.cpp haptic/faults_test.cpp
 
