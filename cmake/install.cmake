@@ -19,6 +19,9 @@ if(PALPATE_BUILD_COMPILED)
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)
   install(EXPORT palpateCompiledTargets NAMESPACE palpate:: DESTINATION ${package_dir})
+  if(PALPATE_NATIVE AND PALPATE_HAS_MARCH_NATIVE)  # otherwise only the linker would say it
+    install(CODE "message(STATUS \"palpate: this library is built with -march=native: so must be the programs that link it\")")
+  endif()
 endif()
 
 if(TARGET palpate_xml_meshes)

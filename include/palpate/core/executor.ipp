@@ -1,6 +1,7 @@
 // Definitions of executor.hpp.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/executor.hpp>
 #include <palpate/core/platform.hpp>
 
@@ -24,14 +25,9 @@ PALPATE_INLINE void StartedThreads::run(int count, const ExecutorTask& task) con
   };
   std::vector<std::thread> started;
   started.reserve(static_cast<std::size_t>(std::max(0, count - 1)));
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  try {
-#endif
+  detail::attempt([&] {  // no more threads, or no memory for one: the others do the work
     for (int i = 1; i < count; ++i) started.emplace_back(work);
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  } catch (...) {  // no more threads, or no memory for one: the others do the work
-  }
-#endif
+  });
   if (count > 0) task(0);
   work();
   for (std::thread& thread : started) thread.join();
@@ -39,7 +35,7 @@ PALPATE_INLINE void StartedThreads::run(int count, const ExecutorTask& task) con
 
 PALPATE_INLINE void SetupThreads::run(int count, const ExecutorTask& task) const {
   const std::uint64_t mode = platform::float_mode();
-  std::mutex mutex;
+  [[maybe_unused]] std::mutex mutex;  // without exceptions
   std::exception_ptr first;
   const auto guarded = [&](int i) {
     const std::uint64_t own = platform::float_mode();

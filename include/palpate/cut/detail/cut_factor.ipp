@@ -1,6 +1,7 @@
 // Definitions of cut_factor.hpp.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/cut/detail/cut_factor.hpp>
 
 #include <Eigen/LU>
@@ -88,15 +89,8 @@ PALPATE_INLINE void CutFactor::take_renewed() noexcept {
 }
 
 PALPATE_INLINE void CutFactor::compute() noexcept {
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  try {
-    request_.made = make();
-  } catch (...) {  // no memory: the last factor stays in use
-    request_.made.reset();
-  }
-#else
-  request_.made = make();
-#endif
+  // No memory: the last factor stays in use.
+  if (!detail::attempt([&] { request_.made = make(); })) request_.made.reset();
 }
 
 PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {

@@ -1,6 +1,7 @@
 // Definitions of front_sweeps.hpp.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/linear/detail/front_sweeps.hpp>
 #include <palpate/linear/detail/one_front.hpp>
 #include <palpate/linear/detail/parallel_sweeps.hpp>
@@ -32,17 +33,10 @@ PALPATE_INLINE void FrontSweeps::gather(double* by_dof) const noexcept {
 template <class Sweep>
 bool FrontSweeps::share(const SetupThreads& threads, Sweep&& sweep) noexcept {
   if (!ParallelSweeps::are_worthwhile(*tree_, threads)) return false;
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  try {
-#endif
+  return attempt([&] {  // without memory for it, nothing is changed yet
     ParallelSweeps sweeps(*tree_, factor_, fronts_, values_.data(), threads);
     sweep(sweeps);
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  } catch (...) {  // no memory for it, and nothing is changed yet
-    return false;
-  }
-#endif
-  return true;
+  });
 }
 
 PALPATE_INLINE void FrontSweeps::forward_all(const SetupThreads& threads) noexcept {

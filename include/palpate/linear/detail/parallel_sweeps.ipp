@@ -1,6 +1,7 @@
 // Definitions of parallel_sweeps.hpp.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/linear/detail/one_front.hpp>
 #include <palpate/linear/detail/parallel_sweeps.hpp>
 
@@ -76,13 +77,7 @@ PALPATE_INLINE void ParallelSweeps::backward() noexcept {
 
 /// A task that an executor did not run, because the system refused a thread or memory for it, is done here.
 PALPATE_INLINE void ParallelSweeps::run(const Sweep& sweep) noexcept {
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  try {
-#endif
-    threads_.run(threads_.threads(), [&](int thread) { work(sweep, thread); });
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  } catch (...) {}
-#endif
+  attempt([&] { threads_.run(threads_.threads(), [&](int thread) { work(sweep, thread); }); });
   work(sweep, 0);
 }
 

@@ -14,6 +14,7 @@ PALPATE_INLINE CurvedBoundary::CurvedBoundary(const CurvedSurface& surface, cons
   simplices.reserve(surface.triangles.size());
   for (const auto& triangle : surface.triangles) {
     SimplexCorners s{{}, 3};
+    s.corners.fill(Vector3::Zero());  // a triangle has no fourth corner, but all are copied
     for (std::size_t a = 0; a < 3; ++a) {
       const NodeId i = triangle[a];
       if (i < 0 || i >= static_cast<NodeId>(surface.positions.size()))

@@ -46,6 +46,7 @@ class TargetReader {
  private:
   void add(std::initializer_list<NodeId> corners) {
     SimplexCorners s{{}, static_cast<int>(corners.size())};
+    s.corners.fill(mesh_->position(*corners.begin()));  // a simplex has up to four corners, and all are copied
     std::ranges::transform(corners, s.corners.begin(), [&](NodeId i) { return mesh_->position(i); });
     simplices.push_back(s);
   }

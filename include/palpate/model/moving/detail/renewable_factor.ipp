@@ -1,6 +1,7 @@
 // Definitions of renewable_factor.hpp.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/model/moving/detail/renewable_factor.hpp>
 
 #include <algorithm>
@@ -71,15 +72,9 @@ PALPATE_INLINE void RenewableFactor::renew() noexcept {
 }
 
 PALPATE_INLINE bool RenewableFactor::find_stiffness(BlockMatrix& k) noexcept {
-#if defined(PALPATE_HAS_EXCEPTIONS)
-  try {
-    return stiffness_at_(asked_, k);
-  } catch (...) {  // no memory
-    return false;
-  }
-#else
-  return stiffness_at_(asked_, k);
-#endif
+  bool found = false;
+  detail::attempt([&] { found = stiffness_at_(asked_, k); });  // not without memory
+  return found;
 }
 
 }}  // namespace palpate
