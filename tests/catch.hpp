@@ -1,8 +1,9 @@
 #pragma once
 
-/// One include for Catch2 v2.13 and v3. Compare numbers with Catch::Matchers::WithinAbs / WithinRel: Approx differs
-/// between the two. Compare texts with test::contains for the same reason.
+/// One include for Catch2 v2.13 and v3. Compare numbers with Catch::Matchers::WithinAbs / WithinRel or Catch::Approx,
+/// always with `Catch::`, as only v2 puts Approx into the global namespace too; texts with test::contains.
 #if __has_include(<catch2/catch_test_macros.hpp>)
+#include <catch2/catch_approx.hpp>
 #include <catch2/catch_template_test_macros.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators_all.hpp>

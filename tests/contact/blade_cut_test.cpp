@@ -69,7 +69,7 @@ TEST_CASE("the work of cutting is toughness times area in every direction across
     CHECK(blade.area() - area > width * (0.04 - hold));
     CHECK(blade.area() - area < width * 0.04);
     CHECK(std::abs(blade.work() - toughness * blade.area()) < 1e-12);
-    CHECK(blade.advance(hand, width).norm() == Approx(toughness * width));
+    CHECK(blade.advance(hand, width).norm() == Catch::Approx(toughness * width));
   }
 }
 
@@ -88,10 +88,10 @@ TEST_CASE("a blade pays for every parallel slit, once", "[contact][blade]") {
   for (const double x : {0.0, 0.003, -0.003}) {
     press(x, 0.0);
     expected += 0.02 * (0.019 - hold);
-    CHECK(blade.area() == Approx(expected).epsilon(0.02));
+    CHECK(blade.area() == Catch::Approx(expected).epsilon(0.02));
     press(x, 0.0);
     press(x + 4e-4, 0.0);  // less than the cut spacing beside it
-    CHECK(blade.area() == Approx(expected).epsilon(0.02));
+    CHECK(blade.area() == Catch::Approx(expected).epsilon(0.02));
   }
   press(0.0, 0.005);  // a quarter of the edge is outside the slit
   CHECK(blade.area() > expected + 0.2 * 0.02 * (0.019 - hold));

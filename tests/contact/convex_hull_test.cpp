@@ -84,8 +84,8 @@ double distance_by_features(const ConvexHull& hull, const std::array<Vector3, 3>
   for (const Vector3& v : hull.vertices()) least = std::min(least, distance_to_triangle(corner, v));
   for (const Vector3& c : corner) least = std::min(least, hull.closest(c).distance);
   for (std::size_t j = 0; j < 3 && hull.dimension() < 2; ++j)
-    least = std::min(least, distance_of_segments(hull.vertices().front(), hull.vertices().back(), corner[j],
-                                                 corner[(j + 1) % 3]));
+    least = std::min(
+        least, distance_of_segments(hull.vertices().front(), hull.vertices().back(), corner[j], corner[(j + 1) % 3]));
   for (const Triangle& t : hull.triangles())
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
@@ -212,8 +212,8 @@ TEST_CASE("a prism of 32 sides has the faces of a prism", "[contact][hull]") {
                   .cross(hull.vertices()[static_cast<std::size_t>(t[1])])
                   .dot(hull.vertices()[static_cast<std::size_t>(t[2])]) /
               6.0;
-  CHECK(volume == Approx(0.7 * 16.0 * std::sin(EIGEN_PI / 16)).epsilon(1e-12));
-  CHECK(hull.extent() == Approx(std::hypot(1.0, 0.5)));
+  CHECK(volume == Catch::Approx(0.7 * 16.0 * std::sin(EIGEN_PI / 16)).epsilon(1e-12));
+  CHECK(hull.extent() == Catch::Approx(std::hypot(1.0, 0.5)));
   CHECK(hull.probes().size() == 9);
 }
 

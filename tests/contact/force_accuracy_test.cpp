@@ -46,10 +46,10 @@ const ForceAccuracy& accuracy_of_one_place() {
 TEST_CASE("missing depths are interpolated from zero and continued in proportion", "[force_error]") {
   const MissingDepth place = three_depths(5e-3);
   CHECK(place.at(0, 0.0).missing == 0.0);
-  CHECK(place.at(0, 0.5).missing == Approx(0.5e-3));
-  CHECK(place.at(0, 1.5).missing == Approx(2e-3));
-  CHECK(place.at(2, 4.0).missing == Approx(2.0 * 9e-3));
-  CHECK(place.at(1, 0.5).doubt == Approx(0.5e-4));
+  CHECK(place.at(0, 0.5).missing == Catch::Approx(0.5e-3));
+  CHECK(place.at(0, 1.5).missing == Catch::Approx(2e-3));
+  CHECK(place.at(2, 4.0).missing == Catch::Approx(2.0 * 9e-3));
+  CHECK(place.at(1, 0.5).doubt == Catch::Approx(0.5e-4));
   CHECK(std::isinf(MissingDepth{}.at(0, 1.0).doubt));  // nothing is known
 }
 
@@ -61,16 +61,16 @@ TEST_CASE("the position over a facet follows from the loads of the vertices", "[
   };
   // The same contact radius and facet length as at the place: F' = F / (1 + missing / depth).
   const auto excess = [&](double missing) { return force * (missing / depth) / (1.0 + missing / depth); };
-  CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0)}) == Approx(excess(1e-3)));
+  CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0)}) == Catch::Approx(excess(1e-3)));
   CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 0.5), contact_at({1, 2, 3}, {1.0, 0.0, 0.0}, 0.5)}) ==
-        Approx(excess(2e-3)));
-  CHECK(expected_of({contact_at({0, 1, 2}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 1.0)}) == Approx(excess(3e-3)));
+        Catch::Approx(excess(2e-3)));
+  CHECK(expected_of({contact_at({0, 1, 2}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 1.0)}) == Catch::Approx(excess(3e-3)));
   // Halfway between a vertex and the middle of an edge.
-  CHECK(expected_of({contact_at({0, 1, 2}, {0.75, 0.25, 0.0}, 1.0)}) == Approx(excess(1.5e-3)));
+  CHECK(expected_of({contact_at({0, 1, 2}, {0.75, 0.25, 0.0}, 1.0)}) == Catch::Approx(excess(1.5e-3)));
   // Contacts of other tools do not count.
   Contact other = contact_at({0, 1, 2}, {0.0, 1.0, 0.0}, 5.0);
   other.tool = 1;
-  CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0), other}) == Approx(excess(1e-3)));
+  CHECK(expected_of({contact_at({0, 1, 2}, {1.0, 0.0, 0.0}, 1.0), other}) == Catch::Approx(excess(1e-3)));
 }
 
 TEST_CASE("the bound contains the expected error, and is infinite for a sphere that was not measured",
@@ -86,7 +86,7 @@ TEST_CASE("the bound contains the expected error, and is infinite for a sphere t
   ContactTool capsule = sphere_with_force(0.01, 1.0);
   capsule.half_length = 0.02;
   CHECK(std::isinf(accuracy.error(capsule, 0, contacts, 0.01).bound));
-  CHECK(accuracy.error_without_force(2).bound == Approx(0.03));
+  CHECK(accuracy.error_without_force(2).bound == Catch::Approx(0.03));
 }
 
 TEST_CASE("the missing depth follows length and modulus of the facets, less the indentation that is added already",
@@ -98,10 +98,10 @@ TEST_CASE("the missing depth follows length and modulus of the facets, less the 
     const double expected = accuracy.error(tool, 0, contacts, 0.01).expected;
     return expected / (1.0 - expected);
   };
-  CHECK(relative(0) == Approx(0.1));
+  CHECK(relative(0) == Catch::Approx(0.1));
   CHECK(relative(1) > 1.5 * relative(0));
   CHECK(relative(1) < 4.0 * relative(0));  // second order at most
-  CHECK(relative(2) == Approx(0.05));
+  CHECK(relative(2) == Catch::Approx(0.05));
   tool.local_compliance = 1e-3;  // 1 mm at 1 N: all that is missing
   CHECK(std::abs(relative(0)) < 1e-12);
 }

@@ -100,7 +100,7 @@ TEST_CASE("contact points of low density are spread evenly over the surface", "[
       ++counts[static_cast<std::size_t>(4 * quarter(0) + quarter(1))];
     }
     const double expected = kept / 16.0;
-    CHECK(kept == Approx(static_cast<double>(samples.count()) / parts).epsilon(0.25));
+    CHECK(kept == Catch::Approx(static_cast<double>(samples.count()) / parts).epsilon(0.25));
     for (const int n : counts) {
       CHECK(n > 0.6 * expected);
       CHECK(n < 1.5 * expected);

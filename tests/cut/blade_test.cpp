@@ -118,11 +118,11 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   move({0.044, 0.03, 0.0201}, 960);
   const BladeCut& blade = *servo.blade();
   const double stretch = threshold / 500.0;  // of the coupling
-  CHECK(blade.edge()[0] == Approx(0.044 - stretch).margin(1e-4));
-  CHECK(most == Approx(threshold));
-  CHECK(blade.area() == Approx(0.04 * blade.edge()[0]).epsilon(0.05));  // by samples along the edge
-  CHECK(blade.work() == Approx(50.0 * blade.area()));
-  CHECK(hand_work - 0.5 * threshold * stretch == Approx(blade.work()).epsilon(0.05));
+  CHECK(blade.edge()[0] == Catch::Approx(0.044 - stretch).margin(1e-4));
+  CHECK(most == Catch::Approx(threshold));
+  CHECK(blade.area() == Catch::Approx(0.04 * blade.edge()[0]).epsilon(0.05));  // by samples along the edge
+  CHECK(blade.work() == Catch::Approx(50.0 * blade.area()));
+  CHECK(hand_work - 0.5 * threshold * stretch == Catch::Approx(blade.work()).epsilon(0.05));
   // The faces that it opened have that area as seen from above, within an element.
   while (tissue.process_cuts()) {}
   const auto opened = [&] {
@@ -147,9 +147,9 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   // Back through the slit, and in again, for nothing; up through the flap at the same price.
   move({-0.004, 0.03, 0.0201}, 960);
   move({0.044, 0.03, 0.0201}, 960);
-  CHECK(blade.area() == Approx(area).epsilon(0.03));
+  CHECK(blade.area() == Catch::Approx(area).epsilon(0.03));
   move({0.044, 0.03, 0.035}, 480);
   CHECK(blade.area() > area + 0.04 * 0.008);
-  CHECK(blade.work() == Approx(50.0 * blade.area()));
+  CHECK(blade.work() == Catch::Approx(50.0 * blade.area()));
   CHECK(most < threshold * 1.001);
 }

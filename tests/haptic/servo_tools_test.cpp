@@ -134,8 +134,8 @@ TEST_CASE("more points in contact than rows: no tool starves, and the force is s
   REQUIRE(all.small > 0.05);
   CHECK_FALSE(all.flagged);
   CHECK(all.missing == 0.0);
-  CHECK(half.large == Approx(all.large).epsilon(0.04));
-  CHECK(half.small == Approx(all.small).epsilon(0.02));
+  CHECK(half.large == Catch::Approx(all.large).epsilon(0.04));
+  CHECK(half.small == Catch::Approx(all.small).epsilon(0.02));
   CHECK(half.jump < 1.5 * all.jump);
   CHECK(half.flagged);
   CHECK(half.missing > 0.02);

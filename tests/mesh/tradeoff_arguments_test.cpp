@@ -44,7 +44,7 @@ TEST_CASE("options of tradeoff are read", "[tradeoff]") {
   CHECK(a.scene.touched == "box 0 0 0 1 1 1");
   CHECK(a.scene.youngs_modulus == 3e3);
   CHECK(a.scene.poisson_ratio == 0.47);
-  CHECK(a.budget == Approx(20e-6));
+  CHECK(a.budget == Catch::Approx(20e-6));
   CHECK(a.only == "Tet10");
   CHECK(a.out == "there");
   CHECK(a.full);

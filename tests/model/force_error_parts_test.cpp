@@ -210,7 +210,7 @@ TEST_CASE("the bound is infinite while a column is missing, then the force is th
   }
   CHECK(missing > 0);
   REQUIRE(there == 30);
-  CHECK(servo.contact_force()[2] == Approx(truth).epsilon(1e-3));
+  CHECK(servo.contact_force()[2] == Catch::Approx(truth).epsilon(1e-3));
 }
 
 TEST_CASE("the bound of a force is the sum of its parts", "[force_error][parts]") {
@@ -218,7 +218,7 @@ TEST_CASE("the bound of a force is the sum of its parts", "[force_error][parts]"
   auto model = parts_model<Condensed<SelectiveInverseFloat>>(body);
   const PartsPress press = press_to(model, body, {0.25}, 10).front();
   const ForceErrorParts& parts = press.error.parts;
-  CHECK(press.error.force == Approx(press.force).epsilon(1e-3));
+  CHECK(press.error.force == Catch::Approx(press.force).epsilon(1e-3));
   for (const double part : {parts.mesh, parts.storage, parts.conditioning, parts.linearity}) CHECK(part > 0.0);
   CHECK(press.error.bound == parts.mesh + parts.storage + parts.conditioning + parts.linearity + parts.merged);
   CHECK(parts.late == 0.0);

@@ -120,7 +120,7 @@ TEST_CASE("the corrected force is nearer to that on a fine mesh, within the boun
       CAPTURE(x, y, depth, truth, force.force()[2], servo.contact_force()[2]);
       CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
       CHECK(force.error.expected == 0.0);
-      CHECK(force.error.force == Approx(force.force().norm()).epsilon(1e-9));
+      CHECK(force.error.force == Catch::Approx(force.force().norm()).epsilon(1e-9));
       given += std::pow(servo.contact_force()[2] / truth - 1.0, 2);
       corrected += std::pow(force.force()[2] / truth - 1.0, 2);
     }
@@ -142,7 +142,7 @@ TEST_CASE("forces are corrected by default where a wanted accuracy was measured"
   const double corrected = ratio(measured, true);
   CHECK(std::abs(corrected - 1.0) > 0.005);
   CHECK(ratio(measured, std::nullopt) == 1.0);
-  CHECK(ratio(wanted, std::nullopt) == Approx(corrected).epsilon(1e-12));
+  CHECK(ratio(wanted, std::nullopt) == Catch::Approx(corrected).epsilon(1e-12));
   CHECK(ratio(wanted, false) == 1.0);
 
   auto coarse = barred_model(block_with_cells(8), radius, 5e3, options);
@@ -180,9 +180,9 @@ TEST_CASE("relative errors do not depend on the modulus", "[force_error]") {
   const Mesh<Tet4> given = block_with_cells(8);
   auto soft = barred_model<Tet4>(given, 8e-3), stiff = barred_model<Tet4>(given, 8e-3, 5e5);
   const BarredPress a = hold_over(soft, 8e-3, 0.03, 0.03, 1e-3), b = hold_over(stiff, 8e-3, 0.03, 0.03, 1e-3);
-  CHECK(b.force == Approx(100.0 * a.force).epsilon(1e-5));
-  CHECK(b.error.expected == Approx(100.0 * a.error.expected).epsilon(1e-2));
-  CHECK(stiff.report().accuracy.typical == Approx(soft.report().accuracy.typical).epsilon(1e-2));
+  CHECK(b.force == Catch::Approx(100.0 * a.force).epsilon(1e-5));
+  CHECK(b.error.expected == Catch::Approx(100.0 * a.error.expected).epsilon(1e-2));
+  CHECK(stiff.report().accuracy.typical == Catch::Approx(soft.report().accuracy.typical).epsilon(1e-2));
 }
 
 TEST_CASE("hexahedra are measured with a fine mesh of tetrahedra", "[force_error]") {
@@ -315,7 +315,7 @@ TEST_CASE("a part that is pinched is measured with two spheres, which do not ben
   }
   const double error = std::sqrt(squares / static_cast<double>(places.size()));
   CAPTURE(error, one.typical, two.typical, one.nodes, two.nodes);
-  CHECK(two.typical == Approx(error).epsilon(0.4));
+  CHECK(two.typical == Catch::Approx(error).epsilon(0.4));
   CHECK(one.typical < 0.6 * error);  // a lobe that bends away hides the error
   CHECK(two.largest >= two.typical);
   std::ostringstream text;

@@ -151,7 +151,7 @@ TEST_CASE("the force of a surrounded part is the derivative of its energy", "[mo
   forces.evaluate(u, f, report);
   const double h = 1e-6, up = forces.evaluate(u + h * direction, unused, report),
                down = forces.evaluate(u - h * direction, unused, report);
-  CHECK(f.dot(direction) == Approx((up - down) / (2.0 * h)).epsilon(1e-6));
+  CHECK(f.dot(direction) == Catch::Approx((up - down) / (2.0 * h)).epsilon(1e-6));
 }
 
 TEST_CASE("a tool feels the same with linear surroundings", "[model][partly_linear][haptic]") {

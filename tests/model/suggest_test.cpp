@@ -55,7 +55,7 @@ void check_errors_of_once(const Suggestion& s) {
     });
     CAPTURE(expected.name());
     REQUIRE(same != s.candidates.end());
-    CHECK(same->error == Approx(expected.error).epsilon(1e-9));
+    CHECK(same->error == Catch::Approx(expected.error).epsilon(1e-9));
   }
 }
 
@@ -82,8 +82,8 @@ TEST_CASE("suggest measures every candidate, with the errors that their own set-
   const Mesh<Tet4> block = suggest_block();
   const double tet4 = find_suggested(s, "Tet4", false).error, tet10 = find_suggested(s, "Tet10", false).error,
                smoothed = find_suggested(s, "Smoothed<Tet4>", false).error;
-  CHECK(tet4 == Approx(typical_error<Tet4>(block)).epsilon(1e-3));
-  CHECK(smoothed == Approx(typical_error<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block))).epsilon(1e-3));
+  CHECK(tet4 == Catch::Approx(typical_error<Tet4>(block)).epsilon(1e-3));
+  CHECK(smoothed == Catch::Approx(typical_error<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block))).epsilon(1e-3));
   CHECK(smoothed < 0.7 * tet4);
   CHECK(tet10 < 0.7 * smoothed);
   const SuggestedModel& refined = find_suggested(s, "Smoothed<Tet4>", true);

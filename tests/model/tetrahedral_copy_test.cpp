@@ -50,8 +50,8 @@ TetrahedralCopy box_copy(const Mesh<E>& mesh, Index elements) {
   const auto copy = tetrahedral_copy(mesh_ref(mesh), [](Index e) { return static_cast<int>(e % 3); });
   REQUIRE(copy);
   CHECK(copy->mesh.element_count() == elements);
-  CHECK(tetrahedra_volume(copy->mesh) == Approx(copied_size.prod()).epsilon(1e-12));
-  CHECK(outer_area(copy->mesh) == Approx(2.0 * (0.06 + 0.03 + 0.02)).epsilon(1e-12));
+  CHECK(tetrahedra_volume(copy->mesh) == Catch::Approx(copied_size.prod()).epsilon(1e-12));
+  CHECK(outer_area(copy->mesh) == Catch::Approx(2.0 * (0.06 + 0.03 + 0.02)).epsilon(1e-12));
   CHECK(copy->mesh.region_names.size() == 3);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     if (copy->nodes[i] >= 0) CHECK(copy->mesh.position(copy->nodes[i]) == mesh.positions[i]);

@@ -26,11 +26,11 @@ TEST_CASE("the thickness is the distance to the opposite side along the press", 
   const Mesh<Tet4> box = box_tet4(Vector3(0.06, 0.04, 0.01), {6, 4, 1});
   const auto boundary = extract_boundary<Tet4>(box);
   const Vector3 up(0.0, 0.0, 1.0), top(0.0213, 0.0171, 0.01);
-  CHECK(thickness_under({top, up}, box, boundary) == Approx(0.01));
-  CHECK(thickness_under({{0.02, 0.02, 0.01}, up}, box, boundary) == Approx(0.01));  // over a vertex: edges below
-  CHECK(thickness_under({{0.06, 0.02, 0.005}, {1.0, 0.0, 0.0}}, box, boundary) == Approx(0.06));
+  CHECK(thickness_under({top, up}, box, boundary) == Catch::Approx(0.01));
+  CHECK(thickness_under({{0.02, 0.02, 0.01}, up}, box, boundary) == Catch::Approx(0.01));  // over a vertex: edges below
+  CHECK(thickness_under({{0.06, 0.02, 0.005}, {1.0, 0.0, 0.0}}, box, boundary) == Catch::Approx(0.06));
   const Vector3 oblique = Vector3(0.6, 0.0, 0.8);
-  CHECK(thickness_under({top, oblique}, box, boundary) == Approx(0.01 / 0.8));
+  CHECK(thickness_under({top, oblique}, box, boundary) == Catch::Approx(0.01 / 0.8));
   CHECK(std::isinf(thickness_under({{0.1, 0.02, 0.01}, up}, box, boundary)));  // beside the body
 }
 

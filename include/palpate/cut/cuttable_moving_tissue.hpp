@@ -3,6 +3,7 @@
 
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_motion.hpp>
@@ -162,9 +163,7 @@ class CuttableMovingTissue : public MovingTissue {
   void prepare_step() noexcept override {
     const CutOrders::Taken taken = orders_.take();
     if (taken.count == 0) return;
-    try {
-      apply(taken);
-    } catch (...) {
+    if (!detail::attempt([&] { apply(taken); })) {
       failed_.store(true, std::memory_order_release);
       report_.failed = true;
     }

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
@@ -83,12 +84,8 @@ class CuttableTissue : public ModelBase {
   }
   /// The same into u, which is resized. Allocates. Not converged, with u unchanged, where `displacement` would throw.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {
-    try {
-      u = displacement(forces);
-      return {true, 0, 0.0};
-    } catch (const SetupError&) {
-      return {false, 0, infinity};
-    }
+    if (detail::attempt([&] { u = displacement(forces); })) return {true, 0, 0.0};
+    return {false, 0, infinity};
   }
 
   /// Replaces loads and prescribed values. Throws as LinearTissue::set_conditions. Makes a new factor. Strong

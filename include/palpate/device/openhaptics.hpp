@@ -20,6 +20,7 @@
 #endif
 
 #include <palpate/concepts/servo.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/device/detail/sdk_state.hpp>
 #include <palpate/device/render_limits.hpp>
@@ -49,12 +50,10 @@ class OpenHapticsDevice {
   /// (bad_argument) when a limit of the SDK is not finite or not positive, and for torque without limits for it.
   explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
       : options_(options), handle_(open(options.name)), rendered_(DeviceLimits{}) {
-    try {
+    const auto limit = [&] {
       rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : sdk_limits(), options_.torque));
-    } catch (...) {
-      hdDisableDevice(handle_);
-      throw;
-    }
+    };
+    detail::run_or_undo(limit, [&] { hdDisableDevice(handle_); });
   }
   ~OpenHapticsDevice() {
     stop();
@@ -240,16 +239,14 @@ class OpenHapticsLoop {
     scheduled_ = true;
     alive_ = true;
     callback_ = hdScheduleAsynchronous(&OpenHapticsLoop::tick, this, HD_MAX_SCHEDULER_PRIORITY);
-    try {
+    const auto begin = [&] {
       hdStartScheduler();
       for (int i = 0; ticks() == 0 && i < 1000; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (ticks() == 0)
         raise(SetupErrorKind::unsupported, "the OpenHaptics scheduler does not call the callback",
               "Is another program using the device, or is " + std::to_string(rate) + " Hz not one of its rates?");
-    } catch (...) {
-      stop();
-      throw;
-    }
+    };
+    detail::run_or_undo(begin, [&] { stop(); });
   }
   void stop() noexcept {
     if (!scheduled_) return;

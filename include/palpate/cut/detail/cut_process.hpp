@@ -1,6 +1,7 @@
 // Applies cuts to a body, and the checks after a cut.
 #pragma once
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
@@ -78,14 +79,12 @@ class CutProcess : public CutState<E> {
     std::swap(touchable_, touchable);
     RestingNodes resting;
     std::swap(resting_, resting);
-    try {
-      set_loads(boundary, scene);
-    } catch (...) {
+    const auto undo = [&] {
       std::swap(topology_, topology);
       std::swap(touchable_, touchable);
       std::swap(resting_, resting);
-      throw;
-    }
+    };
+    detail::run_or_undo([&] { set_loads(boundary, scene); }, undo);
     edges_.clear();
     const CutReport before = std::exchange(report_, CutReport{});
     report_.kept = system_.kept();
@@ -141,7 +140,7 @@ class CutProcess : public CutState<E> {
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
   /// precision.
   void take_in(const TopologyChange<E>& change) {
-    try {
+    const bool is_taken = detail::attempt_unless_refused([&] {
       ++cut_;
       const auto step = system_.update(topology_, change);
       report_.rank = step->rank();
@@ -150,9 +149,8 @@ class CutProcess : public CutState<E> {
       CutView made{contact_, step};
       made.bound_by(bound_);
       publish(std::move(made));
-    } catch (const SetupError&) {
-      renew();
-    }
+    });
+    if (!is_taken) renew();
   }
   /// Folds the update in. From the eighth unchecked cut on, runs one deferred check even if orders wait.
   void settle() {
@@ -195,21 +193,18 @@ class CutProcess : public CutState<E> {
   /// Switches to a new factor when one is ready, with the cuts made since it was started.
   bool take_renewal() {
     if (!renewal_ || !renewal_->is_done()) return false;
-    try {
+    detail::attempt_unless_refused([&] {  // otherwise the old factor stays
       if (auto made = renewal_->take(topology_)) take_over(std::move(*made));
-    } catch (const SetupError&) {  // keep the old factor
-    }
+    });
     renewal_.reset();
     return true;
   }
   void renew() {
     renewal_.reset();
-    try {
-      take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_));
-    } catch (const SetupError&) {
-      report_.failed = true;
-      due_.fill(false);
-    }
+    if (detail::attempt_unless_refused([&] { take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); }))
+      return;
+    report_.failed = true;
+    due_.fill(false);
   }
   void take_over(CutSystem<E>&& fresh) {
     system_ = std::move(fresh);

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
@@ -44,11 +45,8 @@ class CutRenewal {
 
  private:
   void make(const CutPhysics<E>& physics, const std::vector<NodeId>& kept, const SetupLimits& limits) noexcept {
-    try {
-      made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits);
-    } catch (...) {  // out of memory or cancelled: keep the old system
-      made_.reset();
-    }
+    // Out of memory or cancelled: nothing is made, and the old system stays.
+    detail::attempt([&] { made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits); });
     done_.store(true, std::memory_order_release);
   }
 

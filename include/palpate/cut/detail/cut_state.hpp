@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/detail/box.hpp>
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
@@ -39,14 +40,14 @@ class CutState {
     const Tools before = std::exchange(tools_, {radii, parameters});
     const auto surface = contact_;
     ++cut_;
-    try {
+    const auto make = [&] {
       make_contact();
       if (contact_->left_out && report_.cuts == 0) require_dense_surface(radii.smallest, loads);
-    } catch (...) {
+    };
+    detail::run_or_undo(make, [&] {
       tools_ = before;
       contact_ = surface;
-      throw;
-    }
+    });
     publish_exactly();
   }
 
