@@ -74,6 +74,35 @@ class Organ(unittest.TestCase):
         thread.join()
         self.assertGreater(counted[0], 20)
 
+    def test_two_tools(self):
+        path = np.array([(-0.031, -0.032, 0.060 - 0.022 * min(k, 200) / 200) for k in range(300)])
+        away = np.array([0.0, 0.0, 0.1])
+        times = 1e-3 * np.arange(300)
+        session = palpate.Session(self.organ, [palpate.Sphere(4e-3)])
+        alone = session.run(path, times)
+        np.testing.assert_array_equal(session.run(path[:0], []), np.empty((2, 0, 3)))
+        del session
+        both = np.stack([path, np.tile(away, (300, 1))], axis=1)
+        session = palpate.Session(self.organ, [palpate.Sphere(4e-3), palpate.Sphere(4e-3)])
+        together = session.run(both, times)
+        self.assertEqual(together[0].shape, (300, 2, 3))
+        self.assertGreater(np.linalg.norm(alone[1][-1]), 0.01)
+        for one, two in zip(alone, together):
+            np.testing.assert_allclose(two[:, 0], one, atol=1e-9)
+            self.assertEqual(np.abs(two[:, 1]).max(), 0.0)
+        session.reset()
+        for k in range(300):
+            statuses = session.tick_tools(both[k], times[k])
+        np.testing.assert_array_equal(session.contact_force(0), together[1][-1, 0])
+        self.assertEqual(statuses, [session.status(0), session.status(1)])
+        for wrong in (path, both[:, :1], both[:, :, :2]):
+            with self.assertRaises(ValueError):
+                session.run(wrong, times)
+        with self.assertRaises(ValueError):
+            session.tick_tools(path[0], 0.0)
+        with self.assertRaises(ValueError):
+            session.tick(0.0, 0.0, 0.1, 0.0)
+
     def test_one_session(self):
         first = palpate.Session(self.organ, [palpate.Sphere()])
         with self.assertRaises(palpate.SetupError) as refused:
@@ -119,6 +148,39 @@ class Setup(unittest.TestCase):
         self.assertEqual(refused.exception.ids, [7])
         with self.assertRaises(ValueError):
             palpate.Mesh(positions.ravel(), [[0, 1, 2, 3]])
+
+    def test_arrays_by_type(self):
+        """Numbers of every type give the same mesh, or are refused: none is changed by a cast."""
+        positions = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+        cells = np.array([[0, 1, 2, 3]])
+        integers = [np.int8, np.int16, np.int32, np.int64, np.uint8, np.uint16, np.uint32, np.uint64]
+        for kind in integers + [np.float16, np.float32, np.float64, np.longdouble]:
+            self.assertEqual(palpate.Mesh(positions.astype(kind), cells).node_count, 4)
+        for kind in integers:
+            for order in ("<", ">"):
+                ids = np.array([2, 3], dtype=np.dtype(kind).newbyteorder(order))
+                mesh = palpate.Mesh(positions, cells.astype(ids.dtype), 0 * ids[:1])
+                mesh.add_group("these", ids)
+                mesh.add_group("strided", np.arange(8).astype(kind)[::2][:2])
+        mesh.add_group("no node", [])
+        for kind in (bool, np.float32, np.float64, np.longdouble, np.complex128, object, "U1", "M8[s]"):
+            wrong = np.array([1, 0, 1, 0]).astype(kind)
+            with self.subTest(kind):
+                with self.assertRaises(TypeError):
+                    mesh.add_group("wrong", wrong)
+                with self.assertRaises(TypeError):
+                    palpate.Mesh(positions, wrong.reshape(1, 4))
+                with self.assertRaises(TypeError):
+                    palpate.Mesh(positions, cells, wrong[:1])
+        for kind in (bool, np.complex128, object, "U1"):
+            with self.subTest(kind), self.assertRaises(TypeError):
+                palpate.Mesh(positions.astype(kind), cells)
+        for large in (2**32 + 3, 2**31, -2**31 - 1, 2**63):
+            with self.subTest(large), self.assertRaises(palpate.SetupError) as refused:
+                mesh.add_group("large", np.array([large, large]))
+            self.assertEqual((refused.exception.kind, refused.exception.ids), ("index_out_of_range", [large]))
+            with self.subTest(large), self.assertRaises(palpate.SetupError):
+                palpate.Mesh(positions, np.array([4 * [large]]))
 
     def test_policies(self):
         self.assertIn(POLICY, palpate.policies())

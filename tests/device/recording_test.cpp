@@ -72,7 +72,8 @@ bool same_bits(double a, double b) {
 bool same(const RecordedTick& a, const RecordedTick& b) {
   bool equal = same_bits(a.state.time, b.state.time) && a.state.buttons == b.state.buttons &&
                same_bits(a.expected_error, b.expected_error) && same_bits(a.error_bound, b.error_bound) &&
-               a.state.valid == b.state.valid && a.status == b.status;
+               a.state.valid == b.state.valid && a.status == b.status && same_bits(a.state.now, b.state.now) &&
+               a.starts == b.starts;
   for (int i = 0; i < 3; ++i)
     equal = equal && same_bits(a.state.position[i], b.state.position[i]) &&
             same_bits(a.state.velocity[i], b.state.velocity[i]) && same_bits(a.force[i], b.force[i]);
@@ -106,6 +107,8 @@ std::vector<RecordedTick> random_ticks(int count) {
     for (double& x : t.force) x = value();
     t.expected_error = value();
     t.error_bound = value();
+    t.state.now = value();
+    t.starts = random.uniform() < 0.1;
     t.state.buttons = static_cast<std::uint32_t>(random.bits());
     t.state.valid = random.uniform() < 0.5;
     for (int bit = 0; bit < status_flag_count; ++bit)
@@ -132,7 +135,9 @@ struct HostileLocale {
 };
 
 const std::string header = std::string(recording_header) + '\n';
-const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf\n";
+const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf,0,0\n";
+const std::string middle_header = std::string(recording_header_without_now) + '\n';
+const std::string middle_row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf\n";
 const std::string old_header = std::string(recording_header_without_errors) + '\n';
 const std::string old_row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
 
@@ -235,8 +240,11 @@ TEST_CASE("files that are not recordings are refused with file and line",
       {header + row + "0,0,0\n", ":3: ", "a position"},
       {header + "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0\n", ":2: ", "a status"},
       {header + old_row, ":2: ", "an expected error"},
-      {header + row.substr(0, row.size() - 1) + ",1\n", ":2: ", "19 fields"},
-      {header + row.substr(0, row.size() - 1) + ",\n", ":2: ", "19 fields"},
+      {header + row.substr(0, row.size() - 1) + ",1\n", ":2: ", "21 fields"},
+      {header + row.substr(0, row.size() - 1) + ",\n", ":2: ", "21 fields"},
+      {header + middle_row, ":2: ", "the present time"},
+      {header + row.substr(0, row.size() - 2) + "2\n", ":2: ", "starts as 0 or 1"},
+      {middle_header + row, ":2: ", "19 fields"},
       {old_header + row, ":2: ", "17 fields"},
       {old_header + old_row.substr(0, old_row.size() - 1) + ",\n", ":2: ", "17 fields"},
       {old_header + "0,1,5,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n", ":2: ", "17 fields"},  // decimal comma
@@ -290,6 +298,62 @@ TEST_CASE("a recording without errors, as earlier versions wrote it, is read", "
   CHECK(ticks[0].status.has(StatusFlag::saturated));
   CHECK(ticks[0].expected_error == 0.0);
   CHECK(std::isinf(ticks[0].error_bound));
+}
+
+TEST_CASE("a recording without the present time, as earlier versions wrote it, is read", "[device][recording]") {
+  const TemporaryFile file("middle.csv");
+  REQUIRE(middle_header ==
+          "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status,expected_error,error_bound\n");
+  file.write(middle_header + "7,2,3,4,nan,nan,nan,1,0,0,0,5,1,6,7,8,2,0.25,0.5\n" + middle_row);
+  const auto ticks = read_recording(file.path);
+  REQUIRE(ticks.size() == 2);
+  CHECK(ticks[0].error_bound == 0.5);
+  CHECK(std::isnan(ticks[0].state.now));
+  CHECK_FALSE(ticks[0].starts);
+  ReplayDevice replay(file.path);
+  CHECK(replay.read().now == 7.0);  // as if measured when it is read
+}
+
+TEST_CASE("a recorder keeps the force that was rendered, not a second one", "[device][recording]") {
+  MockDevice stylus(trajectory::poke());
+  Recorder recorder(stylus, 4);
+  recorder.start();
+  recorder.read();
+  recorder.write(gated(Vector3(1, 0, 0)));
+  recorder.write(GatedForce{});  // the end of a loop
+  CHECK(stylus.last_force() == Vector3::Zero());
+  CHECK(recorder.ticks()[0].force == Vector3(1, 0, 0));
+}
+
+TEST_CASE("a recorder keeps the age of poses and marks starts; a replay repeats both", "[device][recording]") {
+  MockDevice stylus(trajectory::poke(), {.faults = {{.kind = DeviceFault::Kind::frozen, .first = 3, .count = 2}}});
+  Recorder recorder(stylus, 100);
+  for (int start = 0; start < 2; ++start) {
+    recorder.start();
+    for (int k = 0; k < 5; ++k) recorder.read();
+    recorder.stop();
+  }
+  recorder.read();
+  recorder.note(StatusFlag::stale, 77.0);  // the present time of a loop
+  recorder.note(StatusFlag::stale);
+  const TemporaryFile file("starts.csv");
+  recorder.write_csv(file.path);
+  ReplayDevice replay(file.path);
+  REQUIRE(replay.recorded().size() == 11);
+  Recorder again(replay, 100);
+  for (int k = 0; k < 11; ++k) {
+    INFO(k);
+    const RecordedTick& tick = replay.recorded()[static_cast<std::size_t>(k)];
+    const ToolState state = again.read();
+    CHECK(state.now == (k == 10 ? 77.0 : k / 1000.0));
+    CHECK(state.time == (k == 3 || k == 4 ? 2 : k) / 1000.0);
+    CHECK(tick.starts == (k % 5 == 0 && k < 10));
+    CHECK(replay.restarts() == (k == 5));  // the first one is the start of the replay
+    CHECK(again.restarts() == replay.restarts());
+    CHECK(again.ticks().back().starts == (k == 5));
+  }
+  again.read();
+  CHECK_FALSE(replay.restarts());
 }
 
 TEST_CASE("a recorder keeps the error of every force", "[device][recording][force_error]") {

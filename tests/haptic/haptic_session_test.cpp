@@ -1,5 +1,7 @@
 // Devices, tools and a tissue in one object: values from the devices, refusals, start, stop and reports.
 #include <palpate/device/mock_device.hpp>
+#include <palpate/device/placement.hpp>
+#include <palpate/device/replay_device.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/haptic_session.hpp>
 #include <palpate/testing/allocation_counter.hpp>
@@ -83,6 +85,68 @@ TEST_CASE("a session takes limits, stiffness and rate from the device", "[haptic
   const Vector3 device = press(0.015, 4e-3)(1.0), force = session.servo().contact_force();
   CHECK(force.norm() > 0.1);
   CHECK((800.0 * (session.servo().proxy() - device) - force).norm() < 1e-6 * force.norm());
+}
+
+namespace {
+
+/// A device that gives no present time: a paced loop sets it.
+struct WithoutNow : MockDevice<> {
+  using MockDevice<>::MockDevice;
+  ToolState read() noexcept {
+    ToolState state = MockDevice<>::read();
+    state.now = std::numeric_limits<double>::quiet_NaN();
+    return state;
+  }
+};
+
+/// Ticks of a recording whose force in a replay, in one run, is another.
+int ticks_that_differ(const std::vector<RecordedTick>& ticks, const SessionOptions& options = {}) {
+  ReplayDevice replay(ticks);
+  Recorder again(replay, ticks.size());
+  HapticSession session(again, whole_pad(), sphere, options);
+  session.run(simulated(static_cast<double>(ticks.size()) / 1000.0));
+  const std::vector<RecordedTick> got = again.ticks();
+  REQUIRE(got.size() == ticks.size());
+  int differ = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) differ += ticks[i].force != got[i].force;
+  return differ;
+}
+
+}  // namespace
+
+TEST_CASE("a replay renders the recorded forces: old poses, late ones, lost ones, several starts",
+          "[haptic][session][recording]") {
+  using Kind = DeviceFault::Kind;
+  const std::vector<std::vector<DeviceFault>> cases{
+      {},
+      {{.kind = Kind::frozen, .first = 300, .count = 50}},
+      {{.kind = Kind::stall, .first = 300, .seconds = 0.1}},
+      {{.kind = Kind::invalid_read, .first = 300, .count = 5}, {.kind = Kind::nan_position, .first = 400, .count = 5}}};
+  for (const auto& faults : cases)
+    for (const int starts : {1, 2}) {
+      INFO("case " << &faults - cases.data() << ", starts " << starts);
+      MockDevice<> stylus(press(0.015, 3e-3), {.faults = faults});
+      Recorder recorder(stylus, 2000);
+      HapticSession session(recorder, whole_pad(), sphere, {.limit_energy = true});
+      for (int k = 0; k < starts; ++k) session.run(simulated(0.5));
+      const std::vector<RecordedTick> ticks = recorder.ticks();
+      REQUIRE(ticks.size() == static_cast<std::size_t>(500 * starts));
+      CHECK(ticks.back().force.norm() > 0.1);  // that of the last tick, not the zero after it
+      CHECK(ticks_that_differ(ticks, {.limit_energy = true}) == 0);
+    }
+}
+
+TEST_CASE("the present time that a paced loop sets is recorded, also of a placed device",
+          "[haptic][session][recording]") {
+  WithoutNow stylus(press(0.015, 3e-3), MockOptions{.clock = DeviceClock::wall});
+  Recorder recorder(stylus, 100'000);
+  PlacedDevice placed(recorder, Placement{});
+  HapticSession session(placed, whole_pad(), sphere);
+  session.run({.duration = 0.2});
+  const std::vector<RecordedTick> ticks = recorder.ticks();
+  REQUIRE(ticks.size() > 2);
+  for (const RecordedTick& tick : ticks) REQUIRE(std::isfinite(tick.state.now));
+  CHECK(ticks_that_differ(ticks) == 0);
 }
 
 TEST_CASE("devices with different tools in one session: each has its own limits and stiffness", "[haptic][session]") {

@@ -6,6 +6,8 @@
 #include <palpate/core/spsc_ring.hpp>
 #include <palpate/device/recorder.hpp>
 
+#include <utility>
+
 namespace live {
 
 using namespace palpate;
@@ -55,12 +57,15 @@ class Tap {
     sample_.period = paced_ && last_ > 0 ? 1e-9 * static_cast<double>(wall - last_) : 0.0;
     last_ = wall;
     sample_.tick.state = device_->read();
+    sample_.tick.starts = std::exchange(starting_, false);
+    unanswered_ = true;
     started_ = platform::compute_ns();
     return sample_.tick.state;
   }
   Status write(const GatedForce& force) noexcept {
     sample_.compute = 1e-9 * static_cast<double>(platform::compute_ns() - started_);
     const Status status = device_->write(force);
+    if (!std::exchange(unanswered_, false)) return status;  // the zero at the end of the loop
     sample_.tick.force = force.force();
     sample_.tick.expected_error = force.error.expected;
     sample_.tick.error_bound = force.error.bound;
@@ -68,10 +73,13 @@ class Tap {
     samples_.push(sample_);
     return status;
   }
+  /// The present time that the loop has set.
+  void note(Status, double now) noexcept { sample_.tick.state.now = now; }
   DeviceLimits limits() const noexcept { return device_->limits(); }
   void start() {
     last_ = 0;
     device_->start();
+    starting_ = true;
   }
   void stop() noexcept { device_->stop(); }
 
@@ -80,7 +88,7 @@ class Tap {
 
  private:
   AnyDevice* device_;
-  bool paced_;
+  bool paced_, starting_ = false, unanswered_ = false;
   TickSample sample_;
   std::int64_t last_ = 0, started_ = 0;
   SpscRing<TickSample, 8192> samples_;

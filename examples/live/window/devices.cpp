@@ -13,16 +13,6 @@ namespace live {
 
 namespace {
 
-/// A file has times, but not the present time: its poses are taken as new.
-struct ReplayedDevice : ReplayDevice {
-  using ReplayDevice::ReplayDevice;
-  ToolState read() noexcept {
-    ToolState state = ReplayDevice::read();
-    if (state.valid) state.now = state.time;
-    return state;
-  }
-};
-
 #ifdef LIVE_DHD
 /// The arm with its middle above the organ.
 struct PlacedArm {
@@ -41,7 +31,7 @@ struct PlacedArm {
 std::vector<std::unique_ptr<AnyDevice>> open_devices(const Arguments& arguments) {
   std::vector<std::unique_ptr<AnyDevice>> devices;
   if (arguments.device == "replay") {
-    devices.push_back(std::make_unique<DeviceOf<ReplayedDevice>>(arguments.replay));
+    devices.push_back(std::make_unique<DeviceOf<ReplayDevice>>(arguments.replay));
 #ifdef LIVE_DHD
   } else if (arguments.device == "dhd") {
     devices.push_back(std::make_unique<DeviceOf<PlacedArm>>());

@@ -6,6 +6,7 @@
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -61,9 +62,20 @@ class PlacedDevice {
   DeviceLimits limits() const noexcept { return placement_.limits_in_scene(std::as_const(*device_).limits()); }
   void start() { device_->start(); }
   void stop() noexcept { device_->stop(); }
-  /// Forwards the status to a device that keeps a log (Recorder).
-  void note(Status status) noexcept requires requires(Device& d) { d.note(status); }
-  { device_->note(status); }
+  /// Forwards status and present time to a device that keeps a log (Recorder).
+  void note(Status status, double now = std::numeric_limits<double>::quiet_NaN()) noexcept requires
+      requires(Device& d) {
+    d.note(status);
+  }
+  {
+    if constexpr (requires(Device & d) { d.note(status, now); })
+      device_->note(status, now);
+    else
+      device_->note(status);
+  }
+  /// Forwards that of a replay.
+  bool restarts() const noexcept requires requires(const Device& d) { d.restarts(); }
+  { return std::as_const(*device_).restarts(); }
 
   const Placement& placement() const noexcept { return placement_; }
 

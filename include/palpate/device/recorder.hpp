@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,19 +25,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// One read and the write that followed it.
+/// One read and the first write that followed it.
 struct RecordedTick {
-  ToolState state;
+  ToolState state;                  ///< as read; `now` as the loop set it, where it did
   Vector3 force = Vector3::Zero();  ///< [N] as passed to write
   Status status;                    ///< of the tick, if the loop noted it, and of the write
   double expected_error = 0.0;      ///< [N] ForceError::expected of the contact force
   double error_bound = infinity;    ///< [N] ForceError::bound; infinity: nothing was measured, or not recorded
+  bool starts = false;              ///< the first read after the device was started
 };
 
-/// First line of a recording. SI units; valid is 0 or 1; buttons and status are bit masks.
+/// First line of a recording. SI units; valid and starts are 0 or 1; buttons and status are bit masks.
 inline constexpr std::string_view recording_header =
-    "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status,expected_error,error_bound";
-/// That of a recording without errors, by versions before 0.2; it is read, too.
+    "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status,expected_error,error_bound,now,starts";
+/// Those of recordings by earlier versions, without the present time and starts, and without errors; they are read,
+/// too.
+inline constexpr std::string_view recording_header_without_now =
+    recording_header.substr(0, recording_header.find(",now"));
 inline constexpr std::string_view recording_header_without_errors =
     recording_header.substr(0, recording_header.find(",expected_error"));
 
@@ -44,8 +49,9 @@ inline constexpr std::string_view recording_header_without_errors =
 /// SetupError(bad_file) when the file cannot be written.
 void write_recording(const std::string& path, std::span<const RecordedTick> ticks);
 
-/// A HapticDevice that forwards all calls to another one and keeps the last `capacity` ticks. The memory is allocated
-/// and touched at construction; a tick copies 170 bytes into it. The device must outlive the recorder.
+/// A HapticDevice that forwards all calls to another one and keeps the last `capacity` ticks, also of several starts,
+/// which are marked. The memory is allocated and touched at construction; a tick copies 180 bytes into it. The device
+/// must outlive the recorder.
 template <HapticDevice Device>
 class Recorder {
  public:
@@ -59,11 +65,13 @@ class Recorder {
     RecordedTick& tick = ring_[slot(count_++)];
     tick = RecordedTick{};
     tick.state = device_.read();
+    tick.starts = std::exchange(starting_, false) || restarts();
+    unanswered_ = true;
     return tick.state;
   }
   Status write(const GatedForce& force) noexcept {
     const Status status = device_.write(force);
-    if (count_ == 0) return status;
+    if (!std::exchange(unanswered_, false)) return status;  // for example the zero at the end of a loop
     RecordedTick& tick = newest();
     tick.force = force.force();
     tick.expected_error = force.error.expected;
@@ -71,13 +79,29 @@ class Recorder {
     tick.status |= status;
     return status;
   }
-  /// Adds the status of the tick to its record; HapticSession calls it if a device has this function.
-  void note(Status status) noexcept {
-    if (count_ > 0) newest().status |= status;
+  /// Adds to the record of the tick its status and, if it is finite, the present time that the servo received.
+  /// HapticSession calls it if a device has this function.
+  void note(Status status, double now = std::numeric_limits<double>::quiet_NaN()) noexcept {
+    if (count_ == 0) return;
+    newest().status |= status;
+    if (std::isfinite(now)) newest().state.now = now;
   }
   DeviceLimits limits() const noexcept { return device_.limits(); }
-  void start() { device_.start(); }
-  void stop() noexcept { device_.stop(); }
+  void start() {
+    device_.start();
+    starting_ = true;
+  }
+  void stop() noexcept {
+    device_.stop();
+    unanswered_ = false;
+  }
+  /// That of the device, if it has this function; see ReplayDevice.
+  bool restarts() const noexcept {
+    if constexpr (requires(const Device& d) { d.restarts(); })
+      return device_.restarts();
+    else
+      return false;
+  }
 
   /// The kept ticks, oldest first. Allocates; not while the device runs.
   std::vector<RecordedTick> ticks() const {
@@ -98,6 +122,8 @@ class Recorder {
   Device& device_;
   std::vector<RecordedTick> ring_;
   std::uint64_t count_ = 0;  ///< reads so far
+  bool starting_ = false;    ///< the next read is the first of a start
+  bool unanswered_ = false;  ///< nothing was written since the last read
 };
 
 }}  // namespace palpate

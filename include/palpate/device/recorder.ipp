@@ -47,7 +47,8 @@ inline void append_tick(std::string& text, const RecordedTick& tick) {
   text += ',' + std::to_string(tick.status.bits());
   add(tick.expected_error);
   add(tick.error_bound);
-  text += '\n';
+  add(s.now);
+  text += tick.starts ? ",1\n" : ",0\n";
 }
 
 }}}  // namespace palpate::detail

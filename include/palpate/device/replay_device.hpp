@@ -15,13 +15,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Reads a file written by write_recording, also by an earlier version, which recorded no errors of forces. Throws
-/// SetupError(bad_file) naming file and line.
+/// Reads a file written by write_recording, also by an earlier version, which recorded no present time, no starts and
+/// perhaps no errors of forces. Throws SetupError(bad_file) naming file and line.
 std::vector<RecordedTick> read_recording(const std::string& path);
 
-/// A HapticDevice that returns the states of a recording one by one, including time stamps, and the last one as invalid
-/// after the end of the recording. A file has no ToolState::now: its poses count as measured when they are read. Forces
-/// are rendered by no motors; see last_force() and recorded().
+/// A HapticDevice that returns the states of a recording one by one, including time stamps and ages, and the last one
+/// as invalid after the end of the recording. A pose recorded without ToolState::now counts as measured when it is
+/// read. Where the recorded device was started again, a HapticSession begins again, too. Forces are rendered by no
+/// motors; see last_force() and recorded().
 class ReplayDevice {
  public:
   /// Throws SetupError(bad_argument) when the recording is empty.
@@ -36,7 +37,13 @@ class ReplayDevice {
   void start() noexcept { rendered_.start(); }
   void stop() noexcept { rendered_.stop(); }
 
-  void rewind() noexcept { next_ = 0; }
+  void rewind() noexcept {
+    next_ = 0;
+    last_time_ = 0.0;
+  }
+  /// Whether the state read last was the first one after a start of the recorded device, and not the first of the
+  /// recording: a HapticSession then resets its servo, as its start did.
+  bool restarts() const noexcept { return restarts_; }
   bool finished() const noexcept { return next_ == ticks_.size(); }  ///< every state was read
   std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
   const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered now
@@ -46,6 +53,8 @@ class ReplayDevice {
  private:
   std::vector<RecordedTick> ticks_;
   std::size_t next_ = 0;
+  bool restarts_ = false;
+  double last_time_ = 0.0;  // [s] of the last valid state since a start
   RenderLimits rendered_;
 };
 

@@ -24,7 +24,8 @@ class RecordingReader {
   std::vector<RecordedTick> ticks() {
     std::vector<RecordedTick> all;
     next_line();
-    has_errors_ = line_ == recording_header;
+    has_now_ = line_ == recording_header;
+    has_errors_ = has_now_ || line_ == recording_header_without_now;
     if (!has_errors_ && line_ != recording_header_without_errors)
       refuse("the header " + std::string(recording_header), line_.substr(0, 60));
     while (next_line())
@@ -62,7 +63,11 @@ class RecordingReader {
       t.expected_error = real("an expected error");
       t.error_bound = real("a bound of the error");
     }
-    if (!at_end_) refuse(has_errors_ ? "19 fields" : "17 fields", "more");
+    if (has_now_) {
+      t.state.now = real("the present time");
+      t.starts = mask("starts as 0 or 1", 1u) == 1u;
+    }
+    if (!at_end_) refuse(has_now_ ? "21 fields" : has_errors_ ? "19 fields" : "17 fields", "more");
     return t;
   }
 
@@ -112,7 +117,7 @@ class RecordingReader {
   std::string_view text_, line_, rest_;
   std::string path_;
   int line_number_ = 0;
-  bool at_end_ = false, has_errors_ = false;
+  bool at_end_ = false, has_errors_ = false, has_now_ = false;
 };
 
 }}}  // namespace palpate::detail
@@ -144,12 +149,14 @@ PALPATE_INLINE ReplayDevice::ReplayDevice(std::vector<RecordedTick> ticks, const
 }
 
 PALPATE_INLINE ToolState ReplayDevice::read() noexcept {
-  ToolState state = ticks_[std::min(next_, ticks_.size() - 1)].state;
-  if (finished())
-    state.valid = false;
-  else
-    ++next_;
-  if (!std::isfinite(state.now)) state.now = state.time;
+  const RecordedTick& tick = ticks_[std::min(next_, ticks_.size() - 1)];
+  ToolState state = tick.state;
+  state.valid = state.valid && !finished();
+  restarts_ = tick.starts && next_ > 0 && !finished();
+  if (!finished()) ++next_;
+  if (tick.starts) last_time_ = 0.0;
+  if (state.valid && state.position.allFinite() && std::isfinite(state.time)) last_time_ = state.time;
+  if (!std::isfinite(state.now)) state.now = last_time_;  // as a servo takes a state without it
   rendered_.read_was(state.valid);
   return state;
 }

@@ -74,6 +74,7 @@ struct HapticLoop::State {
   void run_paced(std::int64_t start) noexcept;
   void tick(double seconds) noexcept;
   void set_now() noexcept;
+  bool is_restarted() const noexcept;
   void silence() noexcept;
   std::int64_t periods() const noexcept;
   bool cancelled() const noexcept { return cancel.load(std::memory_order_relaxed); }
@@ -147,6 +148,7 @@ PALPATE_INLINE void HapticLoop::State::tick(double seconds) noexcept {
   const std::vector<LoopDevice>& all = devices.all();
   for (std::size_t i = 0; i < all.size(); ++i) states[i] = all[i].read(all[i].device);
   if (options.paced) set_now();
+  if (servo.reset != nullptr && is_restarted()) servo.reset(servo.servo);
   const std::int64_t before = platform::compute_ns();
   const std::span<const GatedForce> forces = servo.tick(servo.servo, states);
   report.compute.record(1e-9 * static_cast<double>(platform::compute_ns() - before));
@@ -155,7 +157,7 @@ PALPATE_INLINE void HapticLoop::State::tick(double seconds) noexcept {
   double longest = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const GatedForce given = i < forces.size() ? forces[i] : GatedForce{};
-    if (all[i].note != nullptr) all[i].note(all[i].device, given.status);
+    if (all[i].note != nullptr) all[i].note(all[i].device, given.status, states[i].now);
     const Status status = given.status | all[i].write(all[i].device, given);
     const double length = given.force().norm();
     DeviceReport& own = report.devices[i];
@@ -177,6 +179,12 @@ PALPATE_INLINE void HapticLoop::State::set_now() noexcept {
   const double steady = 1e-9 * static_cast<double>(platform::wall_ns());
   for (std::size_t i = 0; i < states.size(); ++i)
     if (!std::isfinite(states[i].now)) states[i].now = clocks[i].now(states[i].time, steady);
+}
+
+/// Whether a replayed device has come to a start of the recorded one.
+PALPATE_INLINE bool HapticLoop::State::is_restarted() const noexcept {
+  return std::any_of(devices.all().begin(), devices.all().end(),
+                     [](const LoopDevice& d) { return d.restarts != nullptr && d.restarts(d.device); });
 }
 
 PALPATE_INLINE void HapticLoop::State::silence() noexcept {

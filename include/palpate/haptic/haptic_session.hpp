@@ -18,8 +18,9 @@ class HapticLoop;
 
 /// One or more devices with a tool each, one tissue, one servo and one loop. Force limits, coupling stiffness and rate
 /// are those of each device's limits(); the loop and the servo have one rate. State number i, read from device i, moves
-/// tool i, and force number i is written to device i; devices with a function note(Status) receive the status of their
-/// tool. Every start begins as a new session does, except that the heat of the motors is kept.
+/// tool i, and force number i is written to device i; devices with a function note(Status), or note(Status, now),
+/// receive the status of their tool and the present time that it was given. Every start begins as a new session does,
+/// except that the heat of the motors is kept; so does a start that a ReplayDevice repeats.
 ///
 /// Refers to devices and tissue, which must outlive it; neither copied nor moved. Threads: start, run, stop and the
 /// destructor belong to one thread; running and progress to any; snapshot to one reader. For an SDK that owns the

@@ -22,6 +22,13 @@ inline std::vector<EnergyTank> tanks_of(const std::vector<DeviceLimits>& devices
   return all;
 }
 
+/// Every start of a session resets the servo; so does a start that a device replays.
+inline LoopServo session_servo(HapticServo& servo) noexcept {
+  LoopServo view = loop_servo(servo);
+  view.reset = [](void* s) noexcept { static_cast<HapticServo*>(s)->reset(); };
+  return view;
+}
+
 }  // namespace detail
 
 PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue,
@@ -33,7 +40,7 @@ PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice
                                             const ToolList& tools, const ServoOptions& options, bool limit_energy)
     : servo_(tissue, tools, options, detail::tanks_of(options.devices, limit_energy)),
       rate_(options.tick_rate()),
-      loop_(std::make_unique<detail::HapticLoop>(devices, detail::loop_servo(servo_), rate_)) {}
+      loop_(std::make_unique<detail::HapticLoop>(devices, detail::session_servo(servo_), rate_)) {}
 
 PALPATE_INLINE HapticSession::~HapticSession() {
   if (loop_->is_started()) stop();

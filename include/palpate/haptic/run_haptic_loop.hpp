@@ -19,12 +19,13 @@ LoopReport run_loop(std::vector<LoopDevice> devices, const LoopServo& servo, con
 /// writes the force; then stops the device in all cases. Returns when `duration` has passed or the progress callback
 /// returned false; one of the two must be given. A tick takes no lock and allocates nothing itself. In
 /// a paced loop ToolState::now is set where the device does not give it. Forces are
-/// written as the servo returns them: the force gate is the servo's last step. If the device has note(Status) (a
-/// Recorder), it receives each tick's status. Throws SetupError(bad_argument) for invalid options, and what
-/// device.start() and the callback throw. If the servo has limits() (HapticServo), a loop that is slower than its rate
-/// by a factor of ForceLimits::late_factor or more is refused (bad_argument; value and threshold are rates): every tick
-/// would count as missed. A loop that is faster than the servo's rate is accepted: the gate's limits are per second and
-/// its steps no longer than the time that passed, and the coupling for a lower rate is the softer one.
+/// written as the servo returns them: the force gate is the servo's last step. If the device has note(Status), or
+/// note(Status, now) as a Recorder, it receives each tick's status, and the present time. Throws
+/// SetupError(bad_argument) for invalid options, and what device.start() and the callback throw. If the servo has
+/// limits() (HapticServo), a loop that is slower than its rate by a factor of ForceLimits::late_factor or more is
+/// refused (bad_argument; value and threshold are rates): every tick would count as missed. A loop that is faster than
+/// the servo's rate is accepted: the gate's limits are per second and its steps no longer than the time that passed,
+/// and the coupling for a lower rate is the softer one.
 template <HapticDevice Device, Servo S>
 LoopReport run_haptic_loop(Device& device, S& servo, const LoopOptions& options) {
   return detail::run_loop({detail::loop_device(device)}, detail::loop_servo(servo), options);

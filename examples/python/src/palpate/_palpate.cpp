@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace py = pybind11;
@@ -25,20 +27,54 @@ using Integers = py::array_t<std::int32_t, py::array::c_style | py::array::force
 
 py::handle setup_error;  // the class palpate.SetupError
 
+/// Raises palpate.SetupError.
+[[noreturn]] void raise(const std::string& kind, const std::string& text, const std::string& hint,
+                        const py::object& ids, std::int64_t count, double value, double threshold) {
+  py::object error = setup_error(hint.empty() ? text : text + ". " + hint);
+  error.attr("kind") = kind;
+  error.attr("ids") = ids;
+  error.attr("count") = count;
+  error.attr("value") = value;
+  error.attr("threshold") = threshold;
+  error.attr("hint") = hint;
+  PyErr_SetObject(setup_error.ptr(), error.ptr());
+  throw py::error_already_set();
+}
+
+/// As np.asarray. Refuses an array of numbers of another kind: a cast would turn a mask into the numbers 0 and 1.
+py::array as_array(const py::object& given, const char* kinds, const std::string& name, const char* hint) {
+  py::array array = py::array::ensure(given);
+  if (!array) throw py::type_error(name + " is no array of numbers");
+  if (array.size() > 0 && std::string(kinds).find(array.dtype().kind()) == std::string::npos)
+    throw py::type_error(name + " is an array of " + std::string(py::str(array.dtype())) + ": " + hint);
+  return array;
+}
+
+/// Real numbers of any type.
+Doubles doubles(const py::object& given, const std::string& name) {
+  return Doubles(as_array(given, "iuf", name, "give real numbers"));
+}
+
+/// Integers of any type, each of which 32 bits hold. Throws SetupError(index_out_of_range) for others.
+Integers integers(const py::object& given, const std::string& name) {
+  const py::array array = as_array(given, "iu", name, "give integers; for a mask np.flatnonzero(mask)");
+  const Integers cast(array);
+  const py::object same = array.attr("__eq__")(cast);
+  if (array.size() == 0 || same.attr("all")().cast<bool>()) return cast;
+  const py::object first = array.attr("flat")[same.attr("argmin")()].attr("item")();
+  py::list ids;
+  ids.append(first);
+  raise("index_out_of_range", name + " contains " + std::string(py::str(first)) + ", which 32 bits do not hold", "",
+        ids, 1, first.cast<double>(), 2147483647.0);
+}
+
 [[noreturn]] void raise_last() {
   palpate_error_info info;
   PALPATE_INIT(&info);
   palpate_last_error(&info);
-  const std::string hint = info.hint, text = info.text;
-  py::object error = setup_error(hint.empty() ? text : text + ". " + hint);
-  error.attr("kind") = palpate_error_name(info.kind);
-  error.attr("ids") = std::vector<std::int64_t>(info.ids, info.ids + info.id_count);
-  error.attr("count") = info.count;
-  error.attr("value") = info.value;
-  error.attr("threshold") = info.threshold;
-  error.attr("hint") = hint;
-  PyErr_SetObject(setup_error.ptr(), error.ptr());
-  throw py::error_already_set();
+  raise(palpate_error_name(info.kind), info.text, info.hint,
+        py::cast(std::vector<std::int64_t>(info.ids, info.ids + info.id_count)), info.count, info.value,
+        info.threshold);
 }
 void check(palpate_error error) {
   if (error != PALPATE_OK) raise_last();
@@ -68,7 +104,11 @@ class Mesh {
     return made;
   }
   Mesh() = default;
-  Mesh(const Doubles& positions, const Integers& cells, const std::optional<Integers>& regions) {
+  Mesh(const py::object& given_positions, const py::object& given_cells, const py::object& given_regions) {
+    const Doubles positions = doubles(given_positions, "positions");
+    const Integers cells = integers(given_cells, "cells");
+    std::optional<Integers> regions;
+    if (!given_regions.is_none()) regions = integers(given_regions, "regions");
     if (positions.ndim() != 2 || positions.shape(1) != 3) throw py::value_error("positions must have shape (n, 3)");
     if (cells.ndim() != 2) throw py::value_error("cells must have shape (m, nodes per cell)");
     if (regions && regions->size() != cells.shape(0)) throw py::value_error("regions must have one number per cell");
@@ -78,7 +118,8 @@ class Mesh {
                                    regions ? regions->data() : nullptr, &mesh));
     handle_.reset(mesh);
   }
-  void add_group(const std::string& name, const Integers& nodes) {
+  void add_group(const std::string& name, const py::object& given) {
+    const Integers nodes = integers(given, "nodes");
     check(palpate_mesh_add_group(handle_.get(), name.c_str(), nodes.data(), static_cast<std::size_t>(nodes.size())));
   }
   void add_group_in_box(const std::string& name, const std::array<double, 3>& low, const std::array<double, 3>& high) {
@@ -268,24 +309,37 @@ class Session {
 
   /// One tick; only for a session with one tool. The results are in the views.
   std::uint32_t tick(double x, double y, double z, double time) {
-    if (states_.size() != 1) throw py::value_error("tick(x, y, z, time) is for one tool: use run");
-    palpate_tool_state& s = states_[0];
-    s.position[0] = x;
-    s.position[1] = y;
-    s.position[2] = z;
-    s.time = s.now = time;
-    s.given = PALPATE_HAS_NOW;
-    check(palpate_session_tick(get(), &s, 1, forces_.data()));
+    if (states_.size() != 1) throw py::value_error("tick(x, y, z, time) is for one tool: use tick_tools, or run");
+    const std::array<double, 3> position{x, y, z};
+    check(tick_at(position.data(), time));
     return forces_[0].status;
   }
+  /// One tick of all tools, a row each: returns their statuses.
+  std::vector<std::uint32_t> tick_tools(const py::object& given, double time) {
+    const Doubles positions = doubles(given, "positions");
+    const auto tools = static_cast<py::ssize_t>(states_.size());
+    if (positions.ndim() != 2 || positions.shape(0) != tools || positions.shape(1) != 3)
+      throw py::value_error("positions must have shape (" + std::to_string(tools) + ", 3), a row per tool");
+    check(tick_at(positions.data(), time));
+    std::vector<std::uint32_t> statuses;
+    for (const palpate_tool_force& f : forces_) statuses.push_back(f.status);
+    return statuses;
+  }
 
-  /// Ticks along a path, one row per tick: returns forces and contact forces.
-  std::pair<py::array_t<double>, py::array_t<double>> run(const Doubles& positions, const Doubles& times) {
-    if (states_.size() != 1) throw py::value_error("run is for a session with one tool");
-    if (positions.ndim() != 2 || positions.shape(1) != 3) throw py::value_error("positions must have shape (n, 3)");
-    if (times.size() != positions.shape(0)) throw py::value_error("times must have one number per position");
+  /// Ticks along a path, one row per tick, or with several tools one row per tick and tool: returns forces and contact
+  /// forces.
+  std::pair<py::array_t<double>, py::array_t<double>> run(const py::object& given_positions,
+                                                          const py::object& given_times) {
+    const Doubles positions = doubles(given_positions, "positions"), times = doubles(given_times, "times");
+    const std::size_t tools = states_.size();
+    const bool one_row = tools == 1 && positions.ndim() == 2 && positions.shape(1) == 3;
+    if (!one_row &&
+        (positions.ndim() != 3 || positions.shape(1) != static_cast<py::ssize_t>(tools) || positions.shape(2) != 3))
+      throw py::value_error(tools == 1 ? "positions must have shape (n, 3)"
+                                       : "positions must have shape (n, " + std::to_string(tools) + ", 3)");
+    if (times.size() != positions.shape(0)) throw py::value_error("times must have one number per tick");
     const auto n = static_cast<std::size_t>(positions.shape(0));
-    py::array_t<double> forces({positions.shape(0), py::ssize_t{3}}), contact(forces.request().shape);
+    py::array_t<double> forces(positions.request().shape), contact(forces.request().shape);
     const double* x = positions.data();
     const double* t = times.data();
     double *f = forces.mutable_data(), *c = contact.mutable_data();
@@ -294,13 +348,11 @@ class Session {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       const py::gil_scoped_release free;
       for (std::size_t i = first; i < std::min(n, first + 4096) && error == PALPATE_OK; ++i) {
-        palpate_tool_state& s = states_[0];
-        std::copy_n(x + 3 * i, 3, s.position);
-        s.time = s.now = t[i];
-        s.given = PALPATE_HAS_NOW;
-        error = palpate_session_tick(get(), &s, 1, forces_.data());
-        std::copy_n(forces_[0].force, 3, f + 3 * i);
-        std::copy_n(forces_[0].contact_force, 3, c + 3 * i);
+        error = tick_at(x + 3 * tools * i, t[i]);
+        for (std::size_t k = 0; k < tools; ++k) {
+          std::copy_n(forces_[k].force, 3, f + 3 * (tools * i + k));
+          std::copy_n(forces_[k].contact_force, 3, c + 3 * (tools * i + k));
+        }
       }
     }
     check(error);
@@ -342,6 +394,15 @@ class Session {
   py::array triangles() const { return view(triangles_); }
 
  private:
+  /// One tick with the tools at these positions, x y z each.
+  palpate_error tick_at(const double* positions, double time) noexcept {
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      std::copy_n(positions + 3 * k, 3, states_[k].position);
+      states_[k].time = states_[k].now = time;
+      states_[k].given = PALPATE_HAS_NOW;
+    }
+    return palpate_session_tick(get(), states_.data(), 1, forces_.data());
+  }
   template <class T>
   static py::array view(const std::shared_ptr<std::vector<T>>& values) {
     const py::capsule owner(new std::shared_ptr<std::vector<T>>(values),
@@ -389,7 +450,7 @@ PYBIND11_MODULE(_palpate, m) {
   m.def("status_names", &status_names, "status"_a);
 
   py::class_<Mesh>(m, "Mesh")
-      .def(py::init<const Doubles&, const Integers&, const std::optional<Integers>&>(), "positions"_a, "cells"_a,
+      .def(py::init<const py::object&, const py::object&, const py::object&>(), "positions"_a, "cells"_a,
            "regions"_a = py::none())
       .def_static("read", &Mesh::read, "path"_a, "scale"_a = 1.0)
       .def("add_group", &Mesh::add_group, "name"_a, "nodes"_a)
@@ -437,6 +498,7 @@ PYBIND11_MODULE(_palpate, m) {
            "tissue"_a, "tools"_a, py::kw_only(), "rate"_a = 0.0, "peak_force"_a = 0.0, "stiffness"_a = 0.0,
            "friction"_a = 0.0, "limit_energy"_a = false, "manual_work"_a = false)
       .def("tick", &Session::tick, "x"_a, "y"_a, "z"_a, "time"_a)
+      .def("tick_tools", &Session::tick_tools, "positions"_a, "time"_a)
       .def("run", &Session::run, "positions"_a, "times"_a)
       .def("reset", &Session::reset)
       .def("work", &Session::work)

@@ -30,11 +30,13 @@ def status_names(status: int) -> List[str]:
 class Mesh:
     node_count: int
     def __init__(self, positions: ArrayLike, cells: ArrayLike, regions: Optional[ArrayLike] = None) -> None:
-        """Arrays of shape (n, 3) [m] and (m, 4, 8, 10 or 20), and a region per cell; copied."""
+        """Arrays of shape (n, 3) [m] and (m, 4, 8, 10 or 20), and a region per cell; copied. TypeError for cells and
+        regions that are no integers, SetupError for integers that 32 bits do not hold."""
     @staticmethod
     def read(path: str, scale: float = 1.0) -> Mesh:
         """A mesh file; `scale` is its unit in metres."""
-    def add_group(self, name: str, nodes: ArrayLike) -> None: ...
+    def add_group(self, name: str, nodes: ArrayLike) -> None:
+        """Numbers of nodes. TypeError for a mask (use np.flatnonzero) or floats."""
     def add_group_in_box(self, name: str, low: Vector, high: Vector) -> None: ...
 
 class Scene:
@@ -85,8 +87,11 @@ class Session:
         """A value of 0 is the default."""
     def tick(self, x: float, y: float, z: float, time: float) -> int:
         """One tick of the only tool: returns the status; the views `force` have the results."""
+    def tick_tools(self, positions: ArrayLike, time: float) -> List[int]:
+        """One tick of all tools, positions of shape (tools, 3) [m]: returns the status of each."""
     def run(self, positions: ArrayLike, times: ArrayLike) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Ticks along a path, a row per tick: forces and contact forces, shape (n, 3) [N]. Other threads run."""
+        """Ticks along a path: positions of shape (n, 3) with one tool, (n, tools, 3) with several [m]. Returns forces
+        and contact forces of the same shape [N]. Other threads run."""
     def reset(self) -> None: ...
     def work(self) -> bool: ...
     def read_surface(self) -> None:

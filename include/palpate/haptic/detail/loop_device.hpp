@@ -15,7 +15,8 @@ struct LoopDevice {
   void* device;
   ToolState (*read)(void*) noexcept;
   Status (*write)(void*, const GatedForce&) noexcept;
-  void (*note)(void*, Status) noexcept;  // null: the device has no such function
+  void (*note)(void*, Status, double now) noexcept;  // null: the device has no such function
+  bool (*restarts)(const void*) noexcept;            // null: the same
   void (*start)(void*);
   void (*stop)(void*) noexcept;
   DeviceLimits (*limits)(const void*) noexcept;
@@ -26,6 +27,7 @@ struct LoopServo {
   void* servo;
   std::span<const GatedForce> (*tick)(void*, std::span<const ToolState>) noexcept;
   double slowest_rate;  ///< [1/s] slower ticks count as missed; 0: the servo does not state its gate's limits
+  void (*reset)(void*) noexcept = nullptr;  ///< before the tick in which a device restarts; null: nothing
 };
 
 template <HapticDevice D>
@@ -34,11 +36,16 @@ LoopDevice loop_device(D& device) noexcept {
                   [](void* d) noexcept { return static_cast<D*>(d)->read(); },
                   [](void* d, const GatedForce& force) noexcept { return static_cast<D*>(d)->write(force); },
                   nullptr,
+                  nullptr,
                   [](void* d) { static_cast<D*>(d)->start(); },
                   [](void* d) noexcept { static_cast<D*>(d)->stop(); },
                   [](const void* d) noexcept { return static_cast<const D*>(d)->limits(); }};
-  if constexpr (requires(Status status) { device.note(status); })
-    view.note = [](void* d, Status status) noexcept { static_cast<D*>(d)->note(status); };
+  if constexpr (requires(Status status, double now) { device.note(status, now); })
+    view.note = [](void* d, Status status, double now) noexcept { static_cast<D*>(d)->note(status, now); };
+  else if constexpr (requires(Status status) { device.note(status); })
+    view.note = [](void* d, Status status, double) noexcept { static_cast<D*>(d)->note(status); };
+  if constexpr (requires(const D& constant) { constant.restarts(); })
+    view.restarts = [](const void* d) noexcept -> bool { return static_cast<const D*>(d)->restarts(); };
   return view;
 }
 template <HapticDevice... D>
