@@ -10,6 +10,9 @@
 #include <catch2/matchers/catch_matchers_all.hpp>
 #else
 #include <catch2/catch.hpp>
+namespace Catch {
+using Detail::Approx;  // v2 has it in the global namespace only
+}
 #endif
 
 #include <string>

@@ -18,7 +18,7 @@ namespace tradeoff {
 template <TissueModel Tissue>
 class RenderedTissue {
  public:
-  RenderedTissue(Tissue& tissue, const PressScene& scene, std::optional<bool> corrected = {})
+  RenderedTissue(Tissue& tissue, const PressScene& scene, bool corrected = false)
       : servo_(tissue, std::vector<SphereTool>(scene.spheres.size(), SphereTool{scene.radius}), uncoupled(corrected)),
         states_(scene.spheres.size()),
         forces_(scene.spheres.size()) {}
@@ -53,7 +53,7 @@ class RenderedTissue {
   }
 
  private:
-  static ServoOptions uncoupled(std::optional<bool> corrected) {
+  static ServoOptions uncoupled(bool corrected) {
     ServoOptions options;
     options.coupling_stiffness = infinity;
     options.corrected_force = corrected;
@@ -114,7 +114,7 @@ class LinearContender : public Contender {
   LinearContender(const Bench& bench, const std::string& mesh, const std::string& kept,
                   const SetupOptions& options = {})
       : LinearContender(bench, mesh, kept, options, [](Model& model) -> Model& { return model; }) {}
-  LinearContender(const Bench& bench, const std::function<Model()>& make, std::optional<bool> corrected = {})
+  LinearContender(const Bench& bench, const std::function<Model()>& make, bool corrected = false)
       : bench_(bench),
         model_(make()),
         tissue_(model_),

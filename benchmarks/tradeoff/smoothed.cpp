@@ -10,15 +10,15 @@ namespace tradeoff {
 
 namespace {
 
-/// The mesh of refine_to_accuracy, with the error bar in every tick; the force is `corrected` by default.
+/// The mesh of refine_to_accuracy, with the error bar in every tick; the force is `corrected` by it if asked for.
 Entry to_accuracy(const Bench& bench, double error, bool corrected) {
   using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
   Entry entry = linear_entry<Smoothed<Tet4>, Condensed<SelectiveInverse>>(
       bench, "Smoothed<Tet4>", "Condensed<SelectiveInverse>", "near", near_group);
-  entry.description.mesh = "to " + number(100.0 * error) + (corrected ? " %" : " %, not corrected");
+  entry.description.mesh = "to " + number(100.0 * error) + (corrected ? " %, corrected" : " %");
   entry.description.paste +=
       "   // refine_to_accuracy<Model>(mesh, scene, materials, {.error = " + number(error) + "}).model";
-  if (!corrected) entry.description.paste += ", ServoOptions::corrected_force = false";
+  if (corrected) entry.description.paste += ", ServoOptions::corrected_force = true";
   entry.make = [&bench, error, corrected] {
     const auto make = [&] {
       Scene scene;

@@ -43,13 +43,16 @@ const ForceAccuracy& accuracy_of_one_place() {
 
 }  // namespace
 
-TEST_CASE("missing depths are interpolated from zero and continued in proportion", "[force_error]") {
+TEST_CASE("missing depths are interpolated from zero, and beyond the last level only their doubt grows",
+          "[force_error]") {
   const MissingDepth place = three_depths(5e-3);
   CHECK(place.at(0, 0.0).missing == 0.0);
-  CHECK(place.at(0, 0.5).missing == Catch::Approx(0.5e-3));
-  CHECK(place.at(0, 1.5).missing == Catch::Approx(2e-3));
-  CHECK(place.at(2, 4.0).missing == Catch::Approx(2.0 * 9e-3));
-  CHECK(place.at(1, 0.5).doubt == Catch::Approx(0.5e-4));
+  CHECK_THAT(place.at(0, 0.5).missing, Catch::Matchers::WithinRel(0.5e-3, 1e-12));
+  CHECK_THAT(place.at(0, 1.5).missing, Catch::Matchers::WithinRel(2e-3, 1e-12));
+  CHECK_THAT(place.at(2, 4.0).missing, Catch::Matchers::WithinRel(9e-3, 1e-12));
+  CHECK_THAT(place.at(2, 4.0).doubt,
+             Catch::Matchers::WithinRel(2e-4 + 9e-3, 1e-12));  // contains what is proportional to the force
+  CHECK_THAT(place.at(1, 0.5).doubt, Catch::Matchers::WithinRel(0.5e-4, 1e-12));
   CHECK(std::isinf(MissingDepth{}.at(0, 1.0).doubt));  // nothing is known
 }
 
@@ -102,6 +105,13 @@ TEST_CASE("the missing depth follows length and modulus of the facets, less the 
   CHECK(relative(1) > 1.5 * relative(0));
   CHECK(relative(1) < 4.0 * relative(0));  // second order at most
   CHECK(relative(2) == Catch::Approx(0.05));
-  tool.local_compliance = 1e-3;  // 1 mm at 1 N: all that is missing
+  tool.force.z() = 3.0;  // as deep as 1.5 N at the place, which is between its levels
+  const ForceError stiff = accuracy.error(tool, 0, std::vector{contact_at({2, 0, 0}, {1.0, 0.0, 0.0}, 3.0)}, 0.01);
+  CHECK_THAT(stiff.expected, Catch::Matchers::WithinRel(3.0 * 0.2 / 1.2, 1e-12));
+  tool.force.z() = 1.0;
+  ForceAccuracy unseen(0.01, {three_depths(5e-3)}, {{0, 5e-3, 0.5}});
+  CHECK_THAT(unseen.error_without_force(0).bound,
+             Catch::Matchers::WithinRel(0.06, 1e-12));  // a force is proportional to the modulus
+  tool.local_compliance = 1e-3;                         // 1 mm at 1 N: all that is missing
   CHECK(std::abs(relative(0)) < 1e-12);
 }

@@ -268,7 +268,7 @@ typedef struct palpate_session_options {
   double friction;             /* Coulomb's coefficient */
   double stale_tissue_after;   /* [s] without a step of a tissue that moves until forces fade; 0: 0.5 */
   int32_t limit_energy;        /* not 0: an energy tank per tool (docs/stability.md) */
-  int32_t corrected_force;     /* 1: subtracts the expected error, where it was measured; -1: does not; 0: default */
+  int32_t corrected_force;     /* 1: subtracts the expected error where its bound is small (docs/force-error.md) */
   uint32_t grasp_buttons;      /* while one of these is pressed, a tool grasps the point it touched */
   int32_t manual_work;         /* not 0: no background thread; the caller calls palpate_session_work */
 } palpate_session_options;

@@ -61,14 +61,9 @@ class ContactSurface {
     return static_cast<std::size_t>(t) < materials_.size() ? materials_[static_cast<std::size_t>(t)]
                                                            : ContactMaterial{};
   }
-  /// Sets the errors that were measured on this surface, null: none were; and whether servos correct forces by them.
-  void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy, bool corrects_forces) noexcept {
-    accuracy_ = std::move(accuracy);
-    corrects_forces_ = corrects_forces;
-  }
+  /// Sets the errors that were measured on this surface; null: none were.
+  void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
-  /// Whether servos subtract the expected errors unless their options say otherwise.
-  bool corrects_forces() const noexcept { return corrects_forces_; }
   /// Sets what is known about the other errors of a linear model.
   void set_model_error(LinearModelError error) noexcept { model_error_ = std::move(error); }
   const LinearModelError& model_error() const noexcept { return model_error_; }
@@ -149,7 +144,6 @@ class ContactSurface {
   Unloaded unloaded_;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const ForceAccuracy> accuracy_;
-  bool corrects_forces_ = false;
   LinearModelError model_error_;
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;

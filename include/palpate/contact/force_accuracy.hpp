@@ -25,16 +25,18 @@ struct MissingDepth {
   std::array<double, positions> unseen{};  ///< [N] largest force on the fine mesh where the given one had none
   double facet_length = 0.0;               ///< mean at the place [m]
 
-  /// The values at a force, interpolated linearly from zero and beyond the last level.
+  /// The values at a force, interpolated linearly from zero. Beyond the last level nothing was measured: the missing
+  /// depth stays, and what it and its doubt would gain in proportion to the force is added to the doubt.
   Level at(std::size_t position, double force) const noexcept;
 };
 
 /// Errors of the forces on a sphere of one radius, measured at several places of a contact surface. Immutable after
 /// set-up; a tick only reads.
 ///
-/// A vertex has the values of a place near it, scaled by the length of its facets: where facets are long compared with
-/// the contact radius a they show nothing of the dent, where they are short the error is of second order, so the
-/// missing depth is taken proportional to h^2 / (h^2 + (2 a)^2). What LocalIndentation adds in a tick is not missing.
+/// A vertex has the values of a place near it, at a force scaled by the modulus, with which the tissue at the place is
+/// pressed as deep. They are scaled by the length of its facets: where facets are long compared with the contact radius
+/// a they show nothing of the dent, where they are short the error is of second order, so the missing depth is taken
+/// proportional to h^2 / (h^2 + (2 a)^2). What LocalIndentation adds in a tick is not missing.
 class ForceAccuracy {
  public:
   /// A vertex of the surface.

@@ -19,8 +19,8 @@ PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double
     }
     low = high;
   }
-  const double t = force / low.force;
-  return {force, t * low.missing, t * low.doubt};
+  const double beyond = force / low.force - 1.0;
+  return {force, low.missing, low.doubt + beyond * (std::abs(low.missing) + low.doubt)};
 }
 
 /// Contact points on facets distribute their force to the vertices. The loads are added per vertex; beyond `capacity`
@@ -69,8 +69,9 @@ PALPATE_INLINE ForceAccuracy::Loads ForceAccuracy::largest_loads(int number,
 }
 
 PALPATE_INLINE ForceError ForceAccuracy::error_without_force(int vertex) const noexcept {
-  const MissingDepth& place = places_[static_cast<std::size_t>(vertices_[static_cast<std::size_t>(vertex)].place)];
-  const double unseen = *std::max_element(place.unseen.begin(), place.unseen.end());
+  const Vertex& at = vertices_[static_cast<std::size_t>(vertex)];
+  const MissingDepth& place = places_[static_cast<std::size_t>(at.place)];
+  const double unseen = *std::max_element(place.unseen.begin(), place.unseen.end()) / at.softness;
   return {0.0, unseen, 0.0, {unseen}};
 }
 
@@ -93,10 +94,10 @@ PALPATE_INLINE ForceError ForceAccuracy::error(const ContactTool& tool, int numb
   for (std::size_t k = 0; k < 3 && loads.vertex[k] >= 0; ++k) {
     const Vertex& vertex = vertices_[static_cast<std::size_t>(loads.vertex[k])];
     const MissingDepth& place = places_[static_cast<std::size_t>(vertex.place)];
-    const double scale = loads.share[k] * vertex.softness * hidden(vertex.facet_length) / hidden(place.facet_length);
+    const double scale = loads.share[k] * hidden(vertex.facet_length) / hidden(place.facet_length);
     double largest = 0.0;
     for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
-      const MissingDepth::Level level = place.at(p, at);
+      const MissingDepth::Level level = place.at(p, at * vertex.softness);
       if (part[p] > 0.0) {
         missing += scale * part[p] * level.missing;
         doubt += loads.share[k] * part[p] * level.doubt;

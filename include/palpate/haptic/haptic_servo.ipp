@@ -60,7 +60,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       forces_(tools.size()),
       errors_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
-      corrected_force_(options.corrected_force.value_or(tissue_.contact_surface().corrects_forces())),
+      corrected_force_(options.corrected_force),
       lost_contact_(tools.size(), false) {
   if (tissue_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
@@ -257,16 +257,20 @@ PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
   return distance < 0.0 && !is_free(tool.proxy, -distance);
 }
 
-/// Updates the error of a tool's force; returns the factor of the force. The bound stays: it was measured for the force
-/// without correction, and the expected error may be too large.
+/// Updates the error of a tool's force; returns the factor of the force. The expected error is subtracted as far as its
+/// bound is small: where the tissue deforms otherwise than it was measured (a pinch of a part that a single sphere
+/// bends) the bound is as large as the force, and the expected error wrong. The bound stays: it was measured for the
+/// force without correction, and the expected error may be too large.
 PALPATE_INLINE double HapticServo::estimate_error(std::size_t i) noexcept {
   ForceError& error = errors_[i];
   error = blades_[i] ? ForceError{0.0, infinity, blades_[i]->force().norm()}
                      : problem_.force_error(tissue_, i, contact_tools_[i]);
-  if (!corrected_force_ || error.expected == 0.0 || !(error.bound < infinity) || contact_tools_[i].grasping) return 1.0;
-  const double factor = 1.0 - error.expected / error.force, before = error.force;
-  error.expected = 0.0;
-  error.force = factor * before;
+  constexpr double whole = 0.2, none = 0.4;  // bounds, relative to the force
+  if (!corrected_force_ || error.expected == 0.0 || contact_tools_[i].grasping) return 1.0;
+  const double trusted = std::clamp((none - error.relative()) / (none - whole), 0.0, 1.0);
+  const double factor = 1.0 - trusted * error.expected / error.force;
+  error.expected *= 1.0 - trusted;
+  error.force *= factor;
   return factor;
 }
 

@@ -22,10 +22,10 @@ struct ServoOptions {
                                                  ///< rigid for a device that renders no torque
   std::optional<ForceLimits> force_limits{};     ///< of every tool; default ForceLimits::from(its device, rate)
   ContactParameters contact{};                   ///< includes friction
-  double stale_tissue_after = 0.5;        ///< [s] without update of a tissue that moves by itself until forces fade
-  std::optional<bool> corrected_force{};  ///< whether ForceError::expected is subtracted from the force, where it is
-                                          ///< known; default: ContactSurface::corrects_forces
-  std::uint32_t grasp_buttons = 0;        ///< while one of these is pressed, the tool grasps the point it touched
+  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
+  bool corrected_force = false;     ///< whether ForceError::expected is subtracted from the force, where its
+                                    ///< bound is at most a fifth of the force, in part up to two fifths
+  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
 
   const DeviceLimits& device_of(std::size_t tool) const noexcept { return devices.empty() ? device : devices[tool]; }
   /// [1/s]

@@ -14,11 +14,11 @@ struct SessionOptions {
   std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations
   std::optional<ForceLimits> force_limits{};     ///< default ForceLimits::from(each device, rate)
   ContactParameters contact{};                   ///< includes friction
-  double stale_tissue_after = 0.5;        ///< [s] without update of a tissue that moves by itself until forces fade
-  std::optional<bool> corrected_force{};  ///< whether ForceError::expected is subtracted from the force, where it is
-                                          ///< known; default: ContactSurface::corrects_forces
-  std::uint32_t grasp_buttons = 0;        ///< while one of these is pressed, the tool grasps the point it touched
-  bool limit_energy = false;              ///< an EnergyTank per tool, EnergyLimits::from its device
+  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
+  bool corrected_force = false;     ///< whether ForceError::expected is subtracted from the force, where its
+                                    ///< bound is at most a fifth of the force, in part up to two fifths
+  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
+  bool limit_energy = false;        ///< an EnergyTank per tool, EnergyLimits::from its device
 };
 
 /// The options of a servo for tools on these devices, one each. Throws bad_argument (ids: the device; value and

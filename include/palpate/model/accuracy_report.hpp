@@ -20,14 +20,6 @@ struct AccuracyReport {
   Index nodes = 0;       ///< of the fine mesh
   double wanted = 0.0;   ///< ForceErrorOptions::wanted
   std::string remark;
-
-  /// Whether servos subtract the expected error from the force by default: where an accuracy is wanted and the error is
-  /// at most a tenth of the force. A corrected force is not conservative. On a closed path it can give 1 % of the
-  /// energy of the press, on a coarse mesh as much as the press took (docs/force-error.md).
-  bool corrects_forces() const noexcept {
-    constexpr double largest_corrected = 0.1;
-    return wanted > 0.0 && places > 0 && typical <= largest_corrected;
-  }
 };
 
 }}  // namespace palpate

@@ -27,8 +27,7 @@ struct ForceErrorOptions {
   /// nodes. Null: from the mesh of the model. Must live during the set-up.
   const MeshRef* coarse = nullptr;
   /// Error that is wanted, relative to the force: above it, and when nothing could be measured,
-  /// SetupFlag::accuracy_not_reached is set. 0: any. Nothing is refined: see refine_to_accuracy. Where the
-  /// measured error is small, servos then correct the force by default: AccuracyReport::corrects_forces.
+  /// SetupFlag::accuracy_not_reached is set. 0: any. Nothing is refined: see refine_to_accuracy.
   double wanted = 0.0;
 };
 

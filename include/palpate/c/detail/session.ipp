@@ -65,7 +65,7 @@ ServoOptions servo_options_from(const palpate_session_options& given) {
   device.rotational_stiffness = given.rotational_stiffness;
   options.contact.friction = given.friction;
   options.stale_tissue_after = value_or(given.stale_tissue_after, options.stale_tissue_after);
-  if (given.corrected_force != 0) options.corrected_force = given.corrected_force > 0;
+  options.corrected_force = given.corrected_force > 0;
   options.grasp_buttons = given.grasp_buttons;
   return options;
 }

@@ -92,7 +92,7 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
   else
     setup_report().accuracy.remark = "the scene does not give the radius of the tool: touch(where, {.radius = ...})";
   setup_report().require_accuracy(options.wanted);
-  surface_.set_force_accuracy(std::move(measured), setup_report().accuracy.corrects_forces());
+  surface_.set_force_accuracy(std::move(measured));
 }
 
 /// A solve loses the digits of the condition number, if that is known, and what the probe solve lost. The columns have

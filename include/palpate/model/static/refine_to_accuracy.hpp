@@ -34,9 +34,8 @@ struct RefinedModel {
 /// first, which gain the new nodes between them. Each mesh costs the set-up of a model with `measured_force_error`; one
 /// or two are typical. If the set-up on a further mesh fails, for example for lack of memory, the last model is
 /// returned; two are in memory meanwhile. The typical error is compared with the goal: single places may have a larger
-/// one. Where it is small, servos subtract the expected error by default (AccuracyReport::corrects_forces).
-/// `options.force_error` is replaced. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of range
-/// and for a scene without that radius, and the errors of refine_near and of the model.
+/// one. `options.force_error` is replaced. For Tet4, Smoothed<Tet4> and Tet10. Throws bad_argument for a goal out of
+/// range and for a scene without that radius, and the errors of refine_near and of the model.
 template <class Model, class Materials>
 RefinedModel<Model> refine_to_accuracy(const Mesh<Tet4>& mesh, const Scene& scene, const Materials& materials,
                                        const AccuracyGoal& goal = {}, SetupOptions options = {}) {

@@ -21,7 +21,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE ForceErrorMeasurement::ForceErrorMeasurement(const ForceErrorSource& source) : source_(source) {
   report_.radius = source.radius;
   choose_places();
-  if (places_.empty()) report_.remark = "the touchable surface has no vertex away from its rim";
+  if (places_.empty()) report_.remark = "the touchable surface has no vertex away from its rim and its supports";
 }
 
 PALPATE_INLINE FacetScale ForceErrorMeasurement::scale_at(int vertex) const {
@@ -35,22 +35,47 @@ PALPATE_INLINE FacetScale ForceErrorMeasurement::scale_at(int vertex) const {
   return scale;
 }
 
-/// Vertices away from the rim by more than a radius and a facet. On a surface that is too small for that many places:
-/// by more than the radius of the deepest contact, since one place does not show how places differ. On a smaller one
-/// the vertex farthest from the rim.
+/// Mean of the normals around a vertex.
+PALPATE_INLINE Vector3 ForceErrorMeasurement::outward_at(int vertex) const {
+  Vector3 sum = Vector3::Zero();
+  for (const int t : source_.surface.triangles_at(vertex)) sum += source_.surface.normal(t);
+  return sum.normalized();
+}
+
+/// Whether a support holds a vertex against a press: a force on it shows nothing of the tissue.
+PALPATE_INLINE bool ForceErrorMeasurement::is_held(int vertex) const {
+  constexpr double most = 0.1;  // square of the part of the normal that is constrained
+  const Vector3 outward = outward_at(vertex);
+  const Index dof = 3 * Index{source_.nodes[static_cast<std::size_t>(vertex)]};
+  double held = 0.0;
+  for (int c = 0; c < 3; ++c)
+    if (source_.conditions.is_constrained(dof + c)) held += outward[c] * outward[c];
+  return held > most;
+}
+
+/// Vertices away from the rim, and from supports on the same side of the body, by more than a radius and a facet. On a
+/// surface that is too small for that many places: by more than the radius of the deepest contact, since one place does
+/// not show how places differ. On a smaller one the vertex farthest from the rim and supports.
 PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
+  constexpr double same_side = -0.1;  // cosine, with room for rounding
   const ContactSurface& surface = source_.surface;
   const double contact = std::sqrt(source_.radius * depths().back());  // of Hertz
-  std::vector<Vector3> rim;
-  for (int v = 0; v < surface.vertex_count(); ++v)
-    if (surface.is_rim_vertex(v)) rim.push_back(surface.position(v));
+  std::vector<SurfacePoint> rim;                                       // without a normal: of any side
+  for (int v = 0; v < surface.vertex_count(); ++v) {
+    if (surface.triangles_at(v).empty()) continue;
+    if (surface.is_rim_vertex(v)) rim.push_back({surface.position(v), Vector3::Zero()});
+    if (is_held(v)) rim.push_back({surface.position(v), outward_at(v)});
+  }
   std::vector<int> inner, nearer;
   int farthest = -1;
   double largest = 0.0;
   for (int v = 0; v < surface.vertex_count(); ++v) {
     if (surface.triangles_at(v).empty()) continue;
     double square = infinity;
-    for (const Vector3& p : rim) square = std::min(square, (p - surface.position(v)).squaredNorm());
+    const Vector3 outward = outward_at(v);
+    for (const SurfacePoint& p : rim)
+      if (p.outward.dot(outward) > same_side)
+        square = std::min(square, (p.position - surface.position(v)).squaredNorm());
     if (std::sqrt(square) > source_.radius + scale_at(v).length) inner.push_back(v);
     if (std::sqrt(square) > contact) nearer.push_back(v);
     if (square > largest) {
@@ -120,6 +145,7 @@ PALPATE_INLINE ForceErrorMeasurement::Place ForceErrorMeasurement::place_at(int 
 }
 
 /// The nearest point behind, if the surface there faces away within 45 degrees: a sphere on a steep side would slip.
+/// None on a support, against which a single sphere presses as well.
 PALPATE_INLINE std::optional<ForceErrorMeasurement::Spot> ForceErrorMeasurement::opposite_of(
     const SurfacePoint& point) const {
   constexpr double least_cosine = 0.7;
@@ -135,6 +161,7 @@ PALPATE_INLINE std::optional<ForceErrorMeasurement::Spot> ForceErrorMeasurement:
   }
   const auto position = [&](int v) -> Vector3 { return surface.position(v); };
   if (spot && point_at(*spot, position).outward.dot(point.outward) > -least_cosine) spot.reset();
+  if (spot && std::ranges::any_of(surface.triangle(spot->triangle), [&](int v) { return is_held(v); })) spot.reset();
   return spot;
 }
 
