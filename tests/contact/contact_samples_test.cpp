@@ -52,6 +52,20 @@ TEST_CASE("the lattice of a right triangle is that of its longest edge; each edg
   }
 }
 
+TEST_CASE("an edge of a whole number of spacings has the same points in any rounding", "[contact][samples]") {
+  // Lengths and spacings that differ from an exact ratio in the last bits, as in scaled and rotated copies.
+  testing::Random random(17);
+  for (const int parts : {2, 3, 8}) {
+    const double scale = random.uniform(1e-3, 1e3);
+    for (int i = -4; i <= 4; ++i) {
+      const double side = scale * (1.0 + i * 0x1p-52);
+      const ContactSurface one({{0, 0, 0}, {side, 0, 0}, {0, side, 0}}, {{0, 1, 2}});
+      CHECK(ContactSamples(one, scale / parts).count() ==
+            ContactSamples(ContactSurface({{0, 0, 0}, {0.99, 0, 0}, {0, 0.99, 0}}, {{0, 1, 2}}), 1.0 / parts).count());
+    }
+  }
+}
+
 TEST_CASE("every sample belongs to one triangle, with barycentric weights", "[contact][samples]") {
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
   const ContactSamples samples(surface, 0.1);

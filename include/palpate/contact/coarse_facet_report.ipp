@@ -14,7 +14,7 @@ PALPATE_INLINE CoarseFacetReport report_coarse_facets(const ContactSurface& surf
   for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
     const double length = surface.facet_length(t);
     report.longest = std::max(report.longest, length);
-    if (!(radius < LocalIndentation::coarse * length)) continue;
+    if (!LocalIndentation::is_coarse(radius, length)) continue;
     report.triangles.push_back(t);
     report.unknown_materials += surface.material(t).modulus == 0.0;
   }

@@ -107,6 +107,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     solve_linearised(tissue, tools, iteration, status);
     const double local_change = local_.predict(tools, candidates_, rows_);
     follow(tools);
+    if (rows_.has_moving()) proxies_.note_alternation(tools);
     proxies_.end(tools);
     change = std::max(local_change, proxies_.relative_change(tools));
     if (has_converged(tools, iteration, local_change, before, change)) break;

@@ -24,7 +24,8 @@ PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolR
       next_list_{list_.points},
       loaded_(static_cast<std::size_t>(capacity)) {
   // From the longest edge on all levels would be equal: vertices only.
-  const double most = std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);
+  const double most =
+      (1.0 + ContactSamples::rounding) * std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);
   for (double r = level_ratio * radii.smallest; r <= most; r *= level_ratio) samples_.add_level(surface, spacing * r);
   reset();
 }

@@ -154,7 +154,8 @@ PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<cons
 /// The level whose spacing fits a tool.
 PALPATE_INLINE int Candidates::level_of(const ContactTool& tool) const noexcept {
   int level = 0;
-  for (double r = level_ratio * smallest_radius_; r <= tool.radius && level + 1 < samples_.levels(); r *= level_ratio)
+  const double radius = (1.0 + ContactSamples::rounding) * tool.radius;
+  for (double r = level_ratio * smallest_radius_; r <= radius && level + 1 < samples_.levels(); r *= level_ratio)
     ++level;
   return level;
 }

@@ -16,7 +16,7 @@ class CoarseFacets {
   CoarseFacets(const ContactSurface& surface, bool known);
 
   /// Whether a tool may touch facets too long for it.
-  bool are_coarse(const ContactTool& tool) const noexcept { return tool.radius < LocalIndentation::coarse * longest_; }
+  bool are_coarse(const ContactTool& tool) const noexcept { return LocalIndentation::is_coarse(tool.radius, longest_); }
   /// Whether a tool is a sphere whose dent the triangle does not show and LocalIndentation gives.
   bool is_local(const ContactTool& tool, const Triangle& triangle) const noexcept;
   /// Scale at a point; the modulus is 0 where that of one of its vertices is not known.

@@ -36,7 +36,7 @@ PALPATE_INLINE bool CoarseFacets::is_local(const ContactTool& tool, const Triang
     if (scale.material.modulus == 0.0) return false;
     longest = std::max(longest, scale.length);
   }
-  return tool.radius < LocalIndentation::coarse * longest;
+  return LocalIndentation::is_coarse(tool.radius, longest);
 }
 
 PALPATE_INLINE FacetScale CoarseFacets::at(const ContactSample& point) const noexcept {

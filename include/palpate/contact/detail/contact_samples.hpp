@@ -22,6 +22,8 @@ class ContactSamples {
 
   /// Largest number of parts of an edge: limits the lattice on very coarse triangles, and with it the work of a tick.
   static constexpr int maximum_subdivision = 32;
+  /// Lengths and radii that differ by less, relatively, count as equal.
+  static constexpr double rounding = 1e-6;
 
   /// One level. Allocates; for set-up.
   ContactSamples(const ContactSurface& surface, double spacing);

@@ -22,9 +22,11 @@ inline double difference(const ContactSample& a, const ContactSample& b) noexcep
   return sum;
 }
 
+/// An edge of a whole number of spacings has that number of parts, also where rounding made it longer: coordinates in
+/// float are rounded by 1e-7. A rotated or scaled copy of the surface then has the same points.
 inline int subdivision(double length, double spacing) {
-  return static_cast<int>(
-      std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
+  const double parts = std::ceil((1.0 - ContactSamples::rounding) * length / spacing);
+  return static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
 }
 
 /// Whether this edge occurs in no triangle before t, and not in t before its i-th edge.

@@ -86,7 +86,7 @@ PALPATE_INLINE Status LocalContact::status(std::size_t t, const ContactTool& too
   constexpr double mostly = 0.5, negligible = 0.1;
   const auto& [compliance, rest, load, known] = next_[t];
   const double force = tool.force.norm();
-  if (!known || !(force > 0.0) || tool.radius >= LocalIndentation::coarse * load.facets.length) return {};
+  if (!known || !(force > 0.0) || !LocalIndentation::is_coarse(tool.radius, load.facets.length)) return {};
   if (load.known < 1.0) return StatusFlag::coarse_contact;
   const LocalIndentation law(tool.radius, load.facets);
   const double indentation = (rest + compliance) * force, local = law.depth(force);

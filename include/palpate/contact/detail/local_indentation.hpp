@@ -28,6 +28,10 @@ class LocalIndentation {
   static constexpr double coarse = 0.6;  ///< radius per length from which facets show the dent
   static constexpr double fine = 0.4;    ///< radius per length up to which they do not
 
+  /// Whether facets of this length do not show all of the dent. The lengths of equal facets differ by rounding, with
+  /// coordinates in float by 1e-7: where the radius is `coarse` times their length, none of them is coarse.
+  static bool is_coarse(double radius, double length) noexcept { return radius < (1.0 - 1e-6) * coarse * length; }
+
   LocalIndentation() = default;
   /// `known` is the share of the force on facets with known modulus.
   LocalIndentation(double radius, const FacetScale& facets, double known = 1.0) noexcept;
