@@ -186,3 +186,13 @@ TEST_CASE("Abaqus: other solids are refused with their line, surfaces of nodes a
   CHECK(test::complaint(test::with(test::abaqus, " 9, 20, 40, 30, 50,", " 9, 20, 40, 30, 60,"), "abaqus") ==
         "index_out_of_range: mesh:15: expected the id of a node of this file, found '60' in element 9");
 }
+
+TEST_CASE("Abaqus: a set of nodes of the elements of a set", "[io]") {
+  const auto mesh = read_abaqus(
+      "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1\n*Element, type=C3D4, elset=a\n1, 1, 2, 3, 4\n"
+      "2, 2, 3, 4, 5\n*Element, type=S3, elset=bottom\n11, 1, 3, 2\n*Nset, nset=clamp, elset=bottom\n"
+      "*Nset, nset=more\nclamp, 5\n*Elset, elset=second\n2\n*Nset, nset=CLAMP2, elset=Second\n1\n");
+  CHECK(mesh.find_group("clamp")->nodes == std::vector<NodeId>{0, 1, 2});
+  CHECK(mesh.find_group("more")->nodes == std::vector<NodeId>{0, 1, 2, 4});
+  CHECK(mesh.find_group("CLAMP2")->nodes == std::vector<NodeId>{0, 1, 2, 3, 4});
+}

@@ -231,4 +231,59 @@ inline std::string veg(const FileMesh& m) {
   return text;
 }
 
+/// Medit as text: references are tags, those of points belong to vertices.
+inline std::string medit(const FileMesh& m) {
+  std::map<Index, int> references;
+  std::map<CellShape, std::string> rows;
+  std::map<CellShape, Index> counts;
+  for (const FileCell& c : m.cells) {
+    if (c.shape == CellShape::point) references[node_of(m, c, 0)] = tag_of(m, c);
+    rows[c.shape] += (node_list(m, c, 1) + ' ' + std::to_string(tag_of(m, c))).substr(1) + '\n';
+    ++counts[c.shape];
+  }
+  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(m.positions.size()) + '\n';
+  for (std::size_t i = 0; i < m.positions.size(); ++i)
+    text += point(m.positions[i]) + ' ' + std::to_string(references[static_cast<Index>(i)]) + '\n';
+  for (const auto& [shape, keyword] :
+       {std::pair{CellShape::triangle3, "Triangles\n"}, std::pair{CellShape::tetrahedron4, "Tetrahedra\n"}})
+    text += keyword + std::to_string(counts[shape]) + '\n' + rows[shape];
+  return text + "End\n";
+}
+
+/// Medit as binary data. Positions of sections have 4 bytes, from version 3 on 8; integers have 8 bytes in version 4,
+/// real numbers 4 in version 1.
+inline std::string medit_binary(const FileMesh& m, int version, bool swap) {
+  std::map<Index, int> references;
+  std::string text = i32(1, swap) + i32(version, swap);
+  const auto position = [&](std::size_t at) {
+    const auto byte = static_cast<Index>(at);
+    return version < 3 ? i32(byte, swap) : i64(byte, swap);
+  };
+  const auto integer = [&](Index n) { return version < 4 ? i32(n, swap) : i64(n, swap); };
+  const auto add = [&](int code, const std::string& data) {
+    const std::size_t next = text.size() + 4 + position(0).size() + data.size();
+    text += i32(code, swap) + position(next) + data;
+  };
+  add(3, i32(3, swap));
+  std::map<CellShape, std::string> rows;
+  std::map<CellShape, Index> counts;
+  for (const FileCell& c : m.cells) {
+    if (c.shape == CellShape::point) references[node_of(m, c, 0)] = tag_of(m, c);
+    for (int a = 0; a < facts(c.shape).nodes; ++a) rows[c.shape] += integer(node_of(m, c, a) + 1);
+    rows[c.shape] += integer(tag_of(m, c));
+    ++counts[c.shape];
+  }
+  std::string vertices = integer(static_cast<Index>(m.positions.size()));
+  for (std::size_t i = 0; i < m.positions.size(); ++i) {
+    for (int k = 0; k < 3; ++k)
+      vertices += version == 1 ? bytes(static_cast<float>(m.positions[i][k]), swap) : f64(m.positions[i][k], swap);
+    vertices += integer(references[static_cast<Index>(i)]);
+  }
+  add(4, vertices);
+  add(15, integer(1) + integer(2));  // RequiredVertices
+  add(6, integer(counts[CellShape::triangle3]) + rows[CellShape::triangle3]);
+  add(8, integer(counts[CellShape::tetrahedron4]) + rows[CellShape::tetrahedron4]);
+  return text + i32(54, swap) + position(0);
+}
+
 }  // namespace test

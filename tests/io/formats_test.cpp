@@ -21,7 +21,7 @@ void check_same_groups(const Mesh<Tet4>& a, const Mesh<Tet4>& b, int dimension) 
   }
 }
 
-/// The part of a mesh that `format` can store: MSH 1, TetGen and VTK have no names, VegaFEM no points and faces.
+/// The part of a mesh that `format` can store: MSH 1, TetGen, Medit and VTK have no names, VegaFEM no points and faces.
 Mesh<Tet4> expected_from(io::FileMesh file, const std::string& format) {
   const bool has_names = format == "veg" || format.starts_with("msh2") || format.starts_with("msh4");
   if (!has_names) file.names.clear();
@@ -40,6 +40,10 @@ std::map<std::string, std::string> all_formats(const io::FileMesh& m) {
           {"vtk2 binary", test::vtk(m, 2, true)},
           {"vtk5", test::vtk(m, 5, false)},
           {"vtk5 binary", test::vtk(m, 5, true)},
+          {"medit", test::medit(m)},
+          {"medit binary, 2", test::medit_binary(m, 2, true)},
+          {"medit binary, 3", test::medit_binary(m, 3, false)},
+          {"medit binary, 4", test::medit_binary(m, 4, false)},
           {"veg", test::veg(m)}};
 }
 
@@ -154,6 +158,83 @@ TEST_CASE("Legacy VTK: regions are found by the name of the array, other data is
   CHECK(test::verdict(base + test::with(more, "11 12", "11"), "vtk2") == "bad_file");
 }
 
+TEST_CASE("VegaFEM: an included list may lack its last line end, with a note; counted rows may not", "[io]") {
+  const std::string text = test::samples().at("veg");
+  const auto read = [&](const std::string& from, const std::string& to, const std::string& other) {
+    return io::build_mesh<Tet4>(
+        io::veg::parse(test::with(text, from, to), "mesh", [&](const std::string&) { return other; }), 1.0, nullptr);
+  };
+  for (const std::string list : {"1, 2", "1,\n2,", "1, 2\n"}) {
+    INFO(list);
+    const auto mesh = read("\n1, 2, ", "\n*INCLUDE list.txt", list);
+    CHECK(mesh.find_group("tissue")->elements == std::vector<Index>{0, 1});
+    const bool is_whole = list.back() == '\n';
+    CHECK(mesh.notes.size() == (is_whole ? 0 : 1));
+    if (!is_whole) CHECK_THAT(mesh.notes[0], test::contains("list.txt has no line end after its last line"));
+  }
+  CHECK_THROWS_AS(read("\n5 1.5 1 1\n", "\n*INCLUDE node.txt\n", "5 1.5 1 1"), SetupError);
+}
+
+TEST_CASE("Legacy VTK: labels under any name are noted, and are regions on request; real numbers must be whole",
+          "[io]") {
+  const auto file = [](const std::string& name, const std::string& type, const std::string& numbers) {
+    return test::with(test::samples().at("vtk2"), "region 1 4 int\n3 2 1 1 ", name + " 1 4 " + type + "\n" + numbers);
+  };
+  const auto read = [](const std::string& text, const std::string& labels = {}) {
+    return io::parse_mesh<Tet4>(text, "mesh.vtk", {.labels = labels});
+  };
+  for (const std::string name : {"mat_id", "label", "Labels", "tissue", "domain", "ElementBlockIds", "attribute"})
+    for (const std::string type : {"int", "float", "double", "unsigned_char", "vtktypeint32"}) {
+      INFO(name << ", " << type);
+      const auto text = file(name, type, "2 2 1 2");
+      const auto plain = read(text);
+      CHECK(plain.region_names == std::vector<std::string>{"body"});
+      REQUIRE(plain.notes.size() == 1);
+      CHECK_THAT(plain.notes[0], test::contains("'" + name + "' (2 different numbers) looks like labels") &&
+                                     test::contains("{.labels = \"" + name + "\"}"));
+      const auto mesh = read(text, name);
+      CHECK(mesh.region_names == std::vector<std::string>{"volume 1", "volume 2"});
+      CHECK(mesh.regions == std::vector<int>{0, 1});
+      CHECK(mesh.notes.empty());
+    }
+  CHECK(read(file("region", "float", "3 2 1 2")).region_names.size() == 2);  // a known name, whole numbers
+  CHECK(read(file("medit:ref", "int", "3 2 1 2")).region_names.size() == 2);
+  CHECK(read(file("region", "float", "3 2 1 2.5")).region_names == std::vector<std::string>{"body"});
+  for (const std::string numbers : {"0 1 2 3", "1 1 1 1", "0.5 0.5 1 1", "nan 1 1 2", "1e300 1 1 1"})
+    CHECK(read(file("other", "float", numbers)).notes.empty());  // ids, one value, quantities
+  const auto two = file("region", "int", "3 2 1 2") + "SCALARS mat_id int\nLOOKUP_TABLE default\n5 5 6 7\n";
+  CHECK(read(two).notes.empty());
+  CHECK(read(two, "mat_id").region_names == std::vector<std::string>{"volume 6", "volume 7"});
+  const auto constant = file("region", "int", "1 1 1 1") + "SCALARS mat_id int\nLOOKUP_TABLE default\n5 5 6 6\n";
+  CHECK(read(constant).notes.size() == 1);
+}
+
+TEST_CASE("Labels that a file does not have are refused with the arrays it has", "[io]") {
+  const auto refusal = [](const std::string& text, const std::string& name, const std::string& labels) -> std::string {
+    try {
+      io::parse_mesh<Tet4>(text, name, {.labels = labels});
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto& all = test::samples();
+  CHECK(refusal(all.at("vtk2"), "mesh.vtk", "mat_id") ==
+        "bad_argument: mesh.vtk: expected an array 'mat_id' with a number per cell, found 'region'");
+  CHECK_THAT(refusal(test::with(all.at("vtk2"), "region 1 4 int\n3 2 1 1 ", "x 1 4 float\n1 2 3.5 4"), "mesh.vtk", "x"),
+             test::contains("bad_argument") && test::contains("whole numbers in the array 'x', found 3.5"));
+  for (const char* format : {"medit", "veg", "abaqus"})
+    CHECK_THAT(refusal(all.at(format), "mesh", "mat_id"), test::contains("in a format without arrays of cells"));
+}
+
+TEST_CASE("Legacy VTK: a total of CELLS that is too small is named", "[io]") {
+  const std::string text = test::samples().at("vtk2");
+  CHECK(test::complaint(test::with(text, "CELLS 4 16", "CELLS 4 14"), "vtk2") ==
+        "index_out_of_range: mesh:16: expected 14 numbers in CELLS, found a cell of 4 nodes after 11 numbers");
+  CHECK(test::complaint(test::with(text, "CELLS 4 16", "CELLS 4 4"), "vtk2") ==
+        "index_out_of_range: mesh:14: expected 4 numbers in CELLS, found a cell of 3 nodes after 2 numbers");
+}
+
 TEST_CASE("The format is detected by content, then by name; surfaces are refused with the command that meshes them",
           "[io]") {
   for (const auto& [format, text] : test::samples()) {
@@ -180,7 +261,7 @@ TEST_CASE("The format is detected by content, then by name; surfaces are refused
              test::contains("found a surface (POLYDATA)") && test::contains("gmsh solid.geo -3"));
   CHECK_THAT(refusal("<?xml version=\"1.0\"?>\n", "organ.vtu"),
              test::contains("organ.vtu:1: expected a file without XML") && test::contains("io::xml::read_mesh") &&
-                 test::contains("meshio convert organ.vtu converted.msh"));
+                 test::contains("meshio convert organ.vtu converted.vtk"));
   CHECK_THAT(refusal("", "organ"), test::contains("bad_file: organ:1: "));
 }
 

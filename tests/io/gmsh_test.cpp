@@ -166,3 +166,77 @@ TEST_CASE("A missing file, a folder and an empty file are refused", "[io]") {
   CHECK_THROWS_AS(io::read_mesh<Tet4>(path.string()), SetupError);
   std::filesystem::remove(path);
 }
+
+TEST_CASE("Binary data without a line end before the mark of its end", "[io]") {
+  // As fTetWild and PyMesh write all sections: the mark follows the last byte.
+  const std::string text_tags = "\n1\n\"$EndNodeData\"\n1\n0.0\n3\n0\n1\n1\n", data = test::i32(1) + test::f64(2.5);
+  for (const std::string format : {"msh2 binary", "msh4 binary", "msh4 binary, swapped"}) {
+    INFO(format);
+    std::string text = test::samples().at(format);
+    for (const std::string section : {"NodeData", "ElementData", "ElementNodeData", "Periodic"})
+      for (const std::string line_end : {"", "\n"})
+        text += "$" + section + text_tags + data + line_end + "$End" + section + "\n";
+    CHECK(test::complaint(text, format) == "");
+    for (const std::string section : {"MeshFormat", "Entities", "Nodes", "Elements"})
+      if (const std::size_t at = text.find("\n$End" + section); at != text.npos) text.erase(at, 1);
+    CHECK(test::complaint(text, format) == "");
+    CHECK(test::verdict(text.substr(0, text.size() - 3), format) == "bad_file");
+  }
+}
+
+TEST_CASE("Nodes of MSH 2 with parameters on their entities are read", "[io]") {
+  const std::string nodes =
+      "$ParametricNodes\n5\n1 0 0 0 0 7\n2 1 0 0 1 7 0.5\n3 0 1 0 2 7 0.5 -3\n4 0 0 1 3 7\n5 1.5 1 1 0 1\n"
+      "$EndParametricNodes\n";
+  const std::size_t from = test::msh2.find("$Nodes"), to = test::msh2.find("$Elements");
+  const std::string text = std::string(test::msh2).replace(from, to - from, nodes);
+  check_same(io::parse_mesh<Tet4>(text), io::parse_mesh<Tet4>(test::msh2));
+  CHECK(test::verdict(with(text, "1 7 0.5\n", "1 7\n")) == "bad_file");
+  CHECK(test::verdict(with(text, "4 0 0 1 3 7", "4 0 0 1 4 7")) == "index_out_of_range");
+
+  using test::f64, test::i32;
+  const std::string binary = test::samples().at("msh2 binary");
+  std::string data = "$ParametricNodes\n5\n";
+  for (int i = 0; i < 5; ++i) {
+    const Vector3 x = io::parse_mesh<Tet4>(test::msh2).positions[static_cast<std::size_t>(i)];
+    data += i32(i + 1) + f64(x[0]) + f64(x[1]) + f64(x[2]) + i32(i % 4) + i32(7);
+    for (int p = 0; p < i % 4 % 3; ++p) data += f64(0.5);
+  }
+  const std::size_t begin = binary.find("$Nodes"), end = binary.find("$Elements");
+  check_same(io::parse_mesh<Tet4>(std::string(binary).replace(begin, end - begin, data + "\n$EndParametricNodes\n")),
+             io::parse_mesh<Tet4>(test::msh2));
+}
+
+TEST_CASE("Groups that a file names and that have no members are noted", "[io]") {
+  CHECK(io::parse_mesh<Tet4>(test::msh2).notes.empty());
+  for (const std::string& base : {test::msh2, test::msh4}) {
+    const auto mesh = io::parse_mesh<Tet4>(with(base, "3\n0 3", "5\n2 7 \"rim\"\n2 8 \"back\"\n0 3"), "organ.msh");
+    CHECK(mesh.notes == std::vector<std::string>{"organ.msh: groups without members: 'rim', 'back'"});
+  }
+}
+
+TEST_CASE("Elementary tags of a Gmsh file are noted if no solid has a physical one, and are regions on request",
+          "[io]") {
+  const auto text2 = with(with(test::msh2, "4 4 2 1 1 2", "4 4 2 0 2 2"), "3 4 2 1 1 1", "3 4 2 0 1 1");
+  const std::size_t from = test::msh4.find("$Entities"), to = test::msh4.find("$Nodes");
+  const auto text4 = with(with(std::string(test::msh4).erase(from, to - from), "\n3 4 1 4\n", "\n4 4 1 4\n"),
+                          "3 1 4 2\n3 1 2 3 4\n", "3 1 4 1\n3 1 2 3 4\n3 2 4 1\n");
+  const auto text1 = with(with(test::samples().at("msh1"), "3 4 1 1 4", "3 4 0 1 4"), "4 4 1 1 4", "4 4 0 2 4");
+  for (const std::string& text : {text1, text2, text4}) {
+    const auto plain = io::parse_mesh<Tet4>(text);
+    CHECK(plain.region_names == std::vector<std::string>{"body"});
+    REQUIRE(!plain.notes.empty());
+    CHECK_THAT(plain.notes[0],
+               test::contains("the 2 elementary tags may be labels") && test::contains("{.labels = \"elementary\"}"));
+    const auto mesh = io::parse_mesh<Tet4>(text, "mesh", {.labels = "elementary"});
+    CHECK(mesh.region_names == std::vector<std::string>{"volume 1", "volume 2"});
+    CHECK(mesh.regions == std::vector<int>{0, 1});
+    CHECK(mesh.notes.empty());
+  }
+  CHECK(io::parse_mesh<Tet4>(with(text2, "0 2 2", "0 1 2")).notes.size() == 1);  // one tag only: the empty group
+  CHECK(io::parse_mesh<Tet4>(with(test::msh2, "2 1 1 2 3 4 5", "2 1 2 2 3 4 5")).notes.empty());
+  // An element in two physical groups is one element.
+  const auto twice = with(with(test::msh2, "Elements\n4", "Elements\n5"), "4 4 2 1", "7 4 2 9 1 1 2 3 4\n4 4 2 1");
+  CHECK(io::parse_mesh<Tet4>(twice, "mesh", {.labels = "elementary"}).element_count() == 2);
+  CHECK_THROWS_AS(io::parse_mesh<Tet4>(test::msh2, "mesh", {.labels = "region"}), SetupError);
+}

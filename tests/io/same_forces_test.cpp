@@ -38,8 +38,8 @@ struct Written {
   Conditions conditions;
 };
 
-/// The organ in every format. MSH 1, TetGen and VTK store numbers instead of names; VegaFEM stores no surfaces, so
-/// nodes are listed instead; their order is that of the file in all formats.
+/// The organ in every format. MSH 1, TetGen, Medit and VTK store numbers instead of names; VegaFEM stores no surfaces,
+/// so nodes are listed instead; their order is that of the file in all formats.
 std::vector<Written> write_all(const TemporaryFolder& folder) {
   const io::FileMesh m = io::gmsh::parse(io::read_file(organ_file), organ_file);
   const auto mesh = io::read_mesh<Tet4>(organ_file);
@@ -60,6 +60,8 @@ std::vector<Written> write_all(const TemporaryFolder& folder) {
   add("VTK 2.0 binary", "two_binary.vtk", test::vtk(m, 2, true), numbered);
   add("VTK 5.1", "five.vtk", test::vtk(m, 5, false), numbered);
   add("VTK 5.1 binary", "five_binary.vtk", test::vtk(m, 5, true), numbered);
+  add("Medit", "organ.mesh", test::medit(m), numbered);
+  add("Medit binary", "organ.meshb", test::medit_binary(m, 3, false), numbered);
   add("VegaFEM", "organ.veg", test::veg(m), listed);
   for (const Index base : {0, 1}) {
     const std::string text = test::tetgen(m, base), name = "base" + std::to_string(base);
@@ -102,7 +104,7 @@ TEST_CASE("The same organ read from every format gives the same forces in every 
   for (const Vector3& f : expected) peak = std::max(peak, f.norm());
   REQUIRE(peak > 0.05);
   const auto all = write_all(folder);
-  CHECK(all.size() == 14);
+  CHECK(all.size() == 16);
   for (const Written& written : all) {
     INFO(written.name);
     const auto forces = press(written.path, written.conditions);

@@ -147,6 +147,9 @@ inline const std::map<std::string, std::string>& samples() {
       {"vtk2 binary", vtk(m, 2, true)},
       {"vtk5", vtk(m, 5, false)},
       {"vtk5 binary", vtk(m, 5, true)},
+      {"medit", medit(m)},
+      {"medit binary", medit_binary(m, 2, false)},
+      {"medit binary, swapped", medit_binary(m, 4, true)},
       {"veg", veg(m)},
       {"abaqus", abaqus},
   };
@@ -170,6 +173,7 @@ inline palpate::io::FileMesh parse_as(const std::string& format, std::string_vie
       if (name == "itself.veg") return "*INCLUDE itself.veg\n";
       palpate::raise(palpate::SetupErrorKind::bad_file, "no file " + name);
     });
+  if (format.starts_with("medit")) return palpate::io::medit::parse(text, "mesh");
   if (format.starts_with("abaqus")) return palpate::io::abaqus::parse(text, "mesh");
   return gmsh::parse(text, "mesh");
 }

@@ -177,6 +177,45 @@ TEST_CASE("FEBio: parts are regions, sets and surfaces are groups", "[xml]") {
   CHECK(old.find_group("base")->faces.size() == 1);
 }
 
+TEST_CASE("FEBio: directions of fibres that are not read are noted", "[xml]") {
+  CHECK(read_xml(xml_test::febio4).notes.empty());
+  for (const std::string attribute : {"type=\"fiber\"", "var=\"fiber\"", "name=\"mat_axis\""}) {
+    const std::string data =
+        "<MeshData><ElementData " + attribute + " elem_set=\"half\"><e lid=\"1\">1,0,0</e></ElementData>";
+    const auto mesh = read_xml(with(xml_test::febio4, "</febio_spec>", data + "</MeshData></febio_spec>"));
+    REQUIRE(mesh.notes.size() == 1);
+    CHECK(mesh.notes[0].find("<ElementData> of the type '") != mesh.notes[0].npos);
+  }
+  const auto old =
+      read_xml(with(xml_test::febio2, "</Geometry>",
+                    "<ElementData><element id=\"7\"><fiber>1,0,0</fiber></element></ElementData></Geometry>"));
+  CHECK(old.notes.size() == 1);
+}
+
+TEST_CASE("VTU: labels under any name are noted, and are regions on request; real numbers must be whole", "[xml]") {
+  for (const auto& [name, base] : xml_test::samples()) {
+    if (!name.starts_with("vtu")) continue;
+    INFO(name);
+    const auto text = with(base, "Name=\"region\"", "Name=\"mat_id\"");
+    const auto plain = read_xml(text);
+    CHECK(plain.region_names == std::vector<std::string>{"body"});
+    REQUIRE(plain.notes.size() == 1);
+    CHECK(plain.notes[0].find("'mat_id' (2 different numbers) looks like labels") != plain.notes[0].npos);
+    const auto mesh = io::xml::parse_mesh<Tet4>(text, "mesh", {.labels = "mat_id"});
+    CHECK(mesh.region_names == std::vector<std::string>{"volume 1"});
+    CHECK(mesh.find_group("surface 2") != nullptr);
+    CHECK_THROWS_AS(io::xml::parse_mesh<Tet4>(text, "mesh", {.labels = "region"}), SetupError);
+  }
+  const std::string ascii = xml_test::samples().at("vtu");
+  const std::size_t at = ascii.find("<DataArray type=\""), end = ascii.find('"', at + 17);
+  const auto real = [&](const std::string& numbers) {
+    return with(std::string(ascii).replace(at + 17, end - at - 17, "Float32"), "1 1 2 ", numbers);
+  };
+  CHECK(read_xml(real("1 1.0 2 ")).region_names == std::vector<std::string>{"volume 1"});
+  CHECK(read_xml(real("1 1.5 2 ")).region_names == std::vector<std::string>{"body"});
+  CHECK(read_xml(real("1 nan 2 ")).region_names == std::vector<std::string>{"body"});
+}
+
 TEST_CASE("Every bad VTU and FEBio file is refused as expected, with its line", "[xml]") {
   for (const BadXml& row : bad_xml) {
     INFO(row.format << ": '" << row.from << "' -> '" << row.to << "'");

@@ -43,6 +43,7 @@ struct FileMesh {
   std::vector<NodeId> cell_nodes;
   bool repeats_cells = false;                   ///< a cell is listed once per group it is in, in consecutive lines
   int last_region = static_cast<int>(max_int);  ///< tags above it define groups but no regions
+  std::vector<std::string> notes;               ///< for Mesh::notes: a sentence each, without the name of the file
 
   /// Adds a cell whose nodes are at the end of cell_nodes, in the order of the file.
   void add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order, std::uint8_t file = 0);
@@ -56,6 +57,10 @@ struct MeshNumbering {
 
 /// Largest number of groups in a mesh file; with more, the tags are assumed to have another meaning.
 inline constexpr std::size_t max_groups = 10000;
+
+/// The command that converts a mesh of another format to one that is read here: meshio would write an ANSYS file to a
+/// name that ends with .msh.
+std::string meshio_command(std::string_view name);
 
 /// The command that fills a closed surface with tetrahedra.
 std::string fill_command(const std::string& surface);

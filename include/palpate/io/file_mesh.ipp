@@ -19,6 +19,10 @@ PALPATE_INLINE void FileMesh::add_cell(Index tag, Index place, CellShape shape, 
   for (std::size_t k = 0; k < count; ++k) cell_nodes[first + k] = read[order[k]];
 }
 
+PALPATE_COLD PALPATE_INLINE std::string meshio_command(std::string_view name) {
+  return joined({"meshio convert ", name, " converted.vtk"});
+}
+
 PALPATE_COLD PALPATE_INLINE std::string fill_command(const std::string& surface) {
   return joined({"Fill it: echo 'Merge \"", surface,
                  "\"; Surface Loop(1) = Surface{:}; Volume(1) = {1}; "

@@ -48,15 +48,28 @@ PALPATE_COLD inline MeshFormat format_of_ending(const std::string& name) {
   refuse(SetupErrorKind::unsupported, {name, ":1: expected solid elements, found a surface"}, hint);
 }
 
+/// The commands that convert a file of no known format: Gmsh's for what only Gmsh reads, else that of meshio.
+PALPATE_COLD inline std::string conversion_hint(const std::string& name) {
+  constexpr std::array<std::string_view, 5> meshes{".unv", ".med", ".cgns", ".bdf", ".nas"};
+  for (const std::string_view ending : meshes)
+    if (has_ending(name, ending)) return joined({"Convert it: gmsh ", name, " -save -format msh41 -o converted.msh"});
+  constexpr std::array<std::string_view, 6> geometries{".step", ".stp", ".iges", ".igs", ".brep", ".geo"};
+  for (const std::string_view ending : geometries)
+    if (has_ending(name, ending)) return joined({"Mesh it: gmsh ", name, " -3 -format msh41 -o solid.msh"});
+  return joined({"meshio and gmsh convert others: ", meshio_command(name)});
+}
+
 /// Refuses a file of no known format.
 [[noreturn]] PALPATE_COLD inline void refuse_unknown(std::string_view text, const std::string& name) {
   TextReader in(text, name);
   in.next_line();
   if (has_ending(name, ".vtu") || has_ending(name, ".feb"))
     refuse(SetupErrorKind::unsupported, {name, ":1: expected a file without XML, found ", in_quotes(in.line())},
-           {"Call io::xml::read_mesh (palpate::xml_meshes), or convert it: meshio convert ", name, " converted.msh"});
-  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, legacy VTK, VegaFEM or Abaqus mesh", in_quotes(in.line()),
-            {"meshio and gmsh convert others: meshio convert ", name, " converted.msh"});
+           {"Call io::xml::read_mesh (palpate::xml_meshes), or convert it: ", meshio_command(name)});
+  if (in.line().starts_with("MFEM "))
+    in.refuse(SetupErrorKind::unsupported, "a Medit mesh", "one of MFEM", "Write it with mfem::Mesh::PrintVTK");
+  in.refuse(SetupErrorKind::bad_file, "a Gmsh, TetGen, Medit, legacy VTK, VegaFEM or Abaqus mesh", in_quotes(in.line()),
+            conversion_hint(name));
 }
 
 /// Include function for a text that is not a file: refuses every included file.
@@ -70,23 +83,29 @@ struct RefuseInclude {
 }  // namespace detail
 
 PALPATE_COLD PALPATE_INLINE MeshFormat format_of(std::string_view text, const std::string& name) {
+  if (medit::is_binary(text)) return MeshFormat::medit;
   TextReader in(text, name, {'\0', false});
   in.next_line();
   if (in.line().starts_with("# vtk DataFile")) return MeshFormat::vtk;
   if (in.line() == "$MeshFormat" || in.line() == "$NOD" || in.line() == "$Comments") return MeshFormat::gmsh;
   while (in.line().starts_with('#') && in.next_line()) {}
+  if (in.line().starts_with("MeshVersionFormatted")) return MeshFormat::medit;
   if (in.line().starts_with('*') && detail::has_ending(name, ".inp")) return MeshFormat::abaqus;
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
   if (in.line().starts_with('*')) return MeshFormat::abaqus;
   return detail::format_of_ending(name);
 }
 
-PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& name) {
-  switch (format_of(text, name)) {
+PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& name, std::string_view labels) {
+  const MeshFormat format = format_of(text, name);
+  if (format != MeshFormat::gmsh && format != MeshFormat::vtk) refuse_labels(labels, name);
+  switch (format) {
     case MeshFormat::gmsh:
-      return gmsh::parse(text, name);
+      return gmsh::parse(text, name, labels);
     case MeshFormat::vtk:
-      return vtk::parse(text, name);
+      return vtk::parse(text, name, labels);
+    case MeshFormat::medit:
+      return medit::parse(text, name);
     case MeshFormat::veg:
       return veg::parse(text, name, detail::RefuseInclude{name});
     case MeshFormat::abaqus:
@@ -98,10 +117,15 @@ PALPATE_INLINE FileMesh parse_file(std::string_view text, const std::string& nam
   }
 }
 
-PALPATE_INLINE FileMesh read_file_mesh(const std::string& path) {
-  if (detail::format_of_ending(path) == MeshFormat::tetgen) return tetgen::read(path);
+PALPATE_INLINE FileMesh read_file_mesh(const std::string& path, std::string_view labels) {
+  if (detail::format_of_ending(path) == MeshFormat::tetgen) {
+    refuse_labels(labels, path);
+    return tetgen::read(path);
+  }
   const std::string text = read_file(path);
-  return format_of(text, path) == MeshFormat::veg ? veg::read(path) : parse_file(text, path);
+  if (format_of(text, path) != MeshFormat::veg) return parse_file(text, path, labels);
+  refuse_labels(labels, path);
+  return veg::read(path);
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io

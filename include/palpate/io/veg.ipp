@@ -79,6 +79,7 @@ inline FileMesh Parser::parse() {
   while (lines_.next_line()) read_section();
   add_tags();
   mesh_.files = std::move(lines_.names);
+  mesh_.notes = std::move(lines_.notes);
   return std::move(mesh_);
 }
 
@@ -157,10 +158,11 @@ inline void Parser::read_set() {
     in().refuse(SetupErrorKind::bad_file, "a new set", {in_quotes(name), " again"});
   std::vector<Index>& set = add_set(name).elements;
   const Index base = std::max<Index>(elements_.base(), 0), count = elements_.count();
-  while (lines_.next_line()) {
-    if (in().line().front() == '*') return lines_.stay();
+  lines_.reads_list = true;
+  while (lines_.next_line() && in().line().front() != '*')
     while (!in().rest().empty()) set.push_back(in().integer("an element id", base, base + count - 1) - base);
-  }
+  lines_.reads_list = false;
+  if (!in().line().empty()) lines_.stay();
 }
 
 PALPATE_COLD inline void Parser::read_region() {

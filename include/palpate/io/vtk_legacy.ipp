@@ -12,8 +12,8 @@ namespace detail {
 /// Parses one file ("VTK File Formats" of the VTK User's Guide; the layout of CELLS changed with 5.0).
 class LegacyParser {
  public:
-  LegacyParser(std::string_view text, const std::string& name)
-      : in_(text, name), numbers_(in_), attributes_(in_, numbers_), mesh_(name) {}
+  LegacyParser(std::string_view text, const std::string& name, std::string_view labels)
+      : in_(text, name), numbers_(in_), attributes_(in_, numbers_, labels), mesh_(name) {}
 
   FileMesh parse();
 
@@ -53,6 +53,7 @@ inline FileMesh LegacyParser::parse() {
   while (in_.next_line()) read_section();
   if (!has_types_) in_.refuse(SetupErrorKind::bad_file, "POINTS, CELLS and CELL_TYPES", "the end of the file");
   if (!numbers_.is_binary) in_.need_last_line_end();
+  attributes_.end(mesh_);
   add_cells(cells_, attributes_.regions, mesh_);
   return std::move(mesh_);
 }
@@ -78,7 +79,7 @@ PALPATE_COLD inline void LegacyParser::read_head() {
     in_.refuse(SetupErrorKind::unsupported, "solid elements", "a surface (POLYDATA)", fill_command(in_.name()));
   if (!same_word(kind, "unstructured_grid"))
     in_.refuse(SetupErrorKind::unsupported, "UNSTRUCTURED_GRID", in_quotes(lower(kind)),
-               {"Convert it: meshio convert ", in_.name(), " converted.msh"});
+               {"Convert it: ", meshio_command(in_.name())});
 }
 
 inline void LegacyParser::read_section() {
@@ -136,7 +137,10 @@ inline void LegacyParser::read_cells() {
   for (Index c = 0, left = total; c < count; ++c) {
     if (!numbers_.is_binary) in_.need_more("a cell");
     cells_.places.push_back(in_.place());
-    const Index nodes = numbers_.integer(type, "a number of nodes of a cell", 0, left - 1);
+    const Index nodes = numbers_.integer(type, "a number of nodes of a cell", 0, max_int);
+    if (nodes >= left)
+      in_.refuse(SetupErrorKind::index_out_of_range, {total, " numbers in CELLS"},
+                 {"a cell of ", nodes, " nodes after ", total - left, " numbers"});
     for (Index a = 0; a < nodes; ++a) add_node(type);
     cells_.offsets.push_back(static_cast<Index>(mesh_.cell_nodes.size()));
     left -= nodes + 1;
@@ -188,8 +192,8 @@ inline void LegacyParser::read_types() {
 
 }  // namespace detail
 
-PALPATE_INLINE FileMesh parse(std::string_view text, const std::string& name) {
-  return detail::LegacyParser(text, name).parse();
+PALPATE_INLINE FileMesh parse(std::string_view text, const std::string& name, std::string_view labels) {
+  return detail::LegacyParser(text, name, labels).parse();
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::vtk

@@ -27,6 +27,8 @@ struct Mesh {
   std::vector<std::string> region_names{"body"};
   GroupTable groups;
   std::vector<Vector3> fibres{};  ///< unit vector along the fibres of each element; empty if there are none
+  /// What the reader of a file did not use and you may miss, a sentence each; part of the report of every model.
+  std::vector<std::string> notes{};
 
   Index node_count() const noexcept { return static_cast<Index>(positions.size()); }
   Index element_count() const noexcept { return static_cast<Index>(elements.size()); }
@@ -107,6 +109,7 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
     mesh.regions.resize(view.elements.size());
     mesh.fibres = view.fibres;
     mesh.region_names = view.region_names;
+    mesh.notes = view.notes;
     mesh.groups = view.groups.chosen(group_names);
     return mesh;
   } else {

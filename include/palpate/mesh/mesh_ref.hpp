@@ -28,6 +28,7 @@ struct PlainMesh {
   std::vector<int> regions;          ///< of every element
   std::vector<std::string> region_names;
   GroupTable groups;
+  std::vector<std::string> notes{};  ///< see Mesh::notes
 };
 
 namespace detail {
@@ -85,6 +86,7 @@ Mesh<E> to_mesh(PlainMesh&& plain) {
   mesh.regions = std::move(plain.regions);
   mesh.region_names = std::move(plain.region_names);
   mesh.groups = std::move(plain.groups);
+  mesh.notes = std::move(plain.notes);
   return mesh;
 }
 

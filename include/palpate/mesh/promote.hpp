@@ -105,6 +105,7 @@ Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
   mesh.regions = linear.regions;
   mesh.region_names = linear.region_names;
   mesh.fibres = linear.fibres;
+  mesh.notes = linear.notes;
   mesh.groups = linear.groups;
   for (Group& group : mesh.groups.all()) detail::promote_group(group, mesh, middles);
   mesh.groups.tidy();

@@ -53,6 +53,7 @@ PALPATE_INLINE Mesh<Tet4> refine(const Mesh<Tet4>& coarse) {
   }
   fine.positions = std::move(quadratic.positions);
   fine.region_names = coarse.region_names;
+  fine.notes = coarse.notes;
   fine.groups = std::move(quadratic.groups);
   for (Group& group : fine.groups.all()) detail::refine_group(group);
   return fine;

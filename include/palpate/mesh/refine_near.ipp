@@ -98,6 +98,7 @@ inline Mesh<Tet4> refined_mesh(const Mesh<Tet4>& coarse, Bisection& bisection) {
     if (coarse.has_fibres()) fine.fibres.insert(fine.fibres.end(), parts, coarse.fibre(e));
   }
   fine.region_names = coarse.region_names;
+  fine.notes = coarse.notes;
   fine.elements = std::move(sorted.elements);
   fine.positions = std::move(bisection.positions());
   return fine;

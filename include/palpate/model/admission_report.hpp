@@ -41,6 +41,9 @@ void report_admission(const Admitted<E>& admitted, SetupReport& report) {
                    std::to_string(given.orphans.count) + " orphan nodes, " + std::to_string(given.inverted.count) +
                    " inverted and " + std::to_string(given.degenerate.count) +
                    " flat elements were found; ids are those of mesh(), see node_map()");
+  std::string notes;
+  for (const std::string& note : admitted.mesh.notes) notes += (notes.empty() ? "" : "; ") + note;
+  if (!notes.empty()) report.set(SetupFlag::file_notes, notes);
 }
 
 template <class E>

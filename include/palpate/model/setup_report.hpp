@@ -29,6 +29,7 @@ enum class SetupFlag : std::uint32_t {
   large_displacement = 1u << 9,
   coarse_contact = 1u << 10,        ///< the facets are too long for the sphere that will touch: see AccuracyReport
   accuracy_not_reached = 1u << 11,  ///< the force error is above the wanted one, or not known: see AccuracyReport
+  file_notes = 1u << 12,            ///< the mesh file has data that its reader did not use: see Mesh::notes
 };
 
 /// Sizes, memory [bytes], times [s] and findings of a set-up.

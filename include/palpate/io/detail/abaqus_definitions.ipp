@@ -29,9 +29,9 @@ PALPATE_INLINE void Definitions::read_set(Sets& sets, std::string_view name_para
   lines_.read_parameters();
   const std::string name = lines_.need_value(name_parameter);
   const bool is_foreign = in_assembly && !lines_.has("INSTANCE");
-  if (name_parameter == "NSET" && lines_.has("ELSET"))
-    lines_.refuse_keyword("nodes of a set", "List the nodes of the elements in the set");
   sets.open(name, in_assembly, lines_.has("INTERNAL"));
+  if (name_parameter == "NSET" && lines_.has("ELSET"))
+    sets.add_nodes_of(find_set(groups.elements, without_instance(lines_.need_value("ELSET"))));
   while (lines_.next_data()) {
     if (!lines_.has("GENERATE"))
       read_set_line(sets, is_foreign);

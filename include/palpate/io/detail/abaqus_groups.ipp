@@ -21,6 +21,7 @@ class GroupBuilder {
   void build(const IdTable& nodes, const IdTable& elements);
 
  private:
+  void add_nodes_of(Index element_set, std::vector<int>& nodes);
   void add_regions(std::vector<std::vector<int>>& tags);
   void add_element_sets();
   void add_node_sets();
@@ -42,11 +43,22 @@ class GroupBuilder {
 };
 
 inline void GroupBuilder::build(const IdTable& nodes, const IdTable& elements) {
-  groups_.nodes.resolve(nodes, in_, memberships_);
   groups_.elements.resolve(elements, in_, memberships_);
+  groups_.nodes.resolve(nodes, in_, memberships_, [&](Index set, std::vector<int>& out) { add_nodes_of(set, out); });
   add_element_sets();
   for (const Surface& surface : groups_.surfaces) add_surface(surface, nodes, elements);
   add_node_sets();
+}
+
+PALPATE_COLD inline void GroupBuilder::add_nodes_of(Index element_set, std::vector<int>& nodes) {
+  for (const int e : groups_.elements.all()[static_cast<std::size_t>(element_set)].members) {
+    const Index at = cells_[static_cast<std::size_t>(e)];
+    check_memberships(in_, ++memberships_);  // so that also the time is proportional to the size of the file
+    if (at < 0) continue;
+    const FileCell& cell = mesh_.cells[static_cast<std::size_t>(at)];
+    for (std::size_t a = 0; a < static_cast<std::size_t>(facts(cell.shape).nodes); ++a)
+      nodes.push_back(mesh_.cell_nodes[cell.first_node + a]);
+  }
 }
 
 /// Names of the part that the assembly also uses get a prefix.

@@ -3,6 +3,7 @@
 
 #include <palpate/io/detail/id_table.hpp>
 
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -30,17 +31,25 @@ class Sets {
   /// All members that the set at this position has so far.
   void add_set(Index set);
 
+  /// In a set of nodes: all nodes of the elements in the set of elements at this position.
+  void add_nodes_of(Index element_set);
+
   /// The position of a set, -1 if there is none; in the assembly its own sets come first.
   Index find(std::string_view name, bool of_assembly) const;
 
-  /// Finds the members of all sets. `memberships` counts them, with repetitions, in all sets of the file: a few bytes
-  /// can put every element into a set, and memory must stay proportional to the size of the file.
-  void resolve(const IdTable& ids, const TextReader& in, Index& memberships);
+  /// Adds the nodes of the elements in a set to `nodes`.
+  using NodesOf = std::function<void(Index element_set, std::vector<int>& nodes)>;
+
+  /// Finds the members of all sets; `nodes_of` is needed for sets of nodes only. `memberships` counts them, with
+  /// repetitions, in all sets of the file: a few bytes can put every element into a set, and memory must stay
+  /// proportional to the size of the file.
+  void resolve(const IdTable& ids, const TextReader& in, Index& memberships, const NodesOf& nodes_of = {});
 
   const std::vector<Set>& all() const noexcept { return sets_; }
 
  private:
-  /// 16 bytes, because an id in a set may be two bytes of the file. `step` is 0 for positions, -1 for a set.
+  /// 16 bytes, because an id in a set may be two bytes of the file. `step` is 0 for positions, -1 for a set, -2 for a
+  /// set of elements.
   struct Item {
     int first, last, step, line;
   };
@@ -48,7 +57,8 @@ class Sets {
     std::size_t set, first_item;
   };
 
-  void add(std::vector<int>& members, const Item& item, const IdTable& ids, const TextReader& in, Index& memberships);
+  void add(std::vector<int>& members, const Item& item, const IdTable& ids, const TextReader& in, Index& memberships,
+           const NodesOf& nodes_of);
 
   std::vector<Set> sets_;
   std::map<std::pair<bool, std::string>, Index> by_name_;

@@ -29,6 +29,10 @@ PALPATE_COLD PALPATE_INLINE void Sets::add_set(Index set) {
   items_.push_back({static_cast<int>(set), 0, -1, 0});
 }
 
+PALPATE_COLD PALPATE_INLINE void Sets::add_nodes_of(Index element_set) {
+  items_.push_back({static_cast<int>(element_set), 0, -2, 0});
+}
+
 PALPATE_COLD PALPATE_INLINE Index Sets::find(std::string_view name, bool of_assembly) const {
   const std::string key = upper(name);
   auto found = by_name_.end();
@@ -38,9 +42,11 @@ PALPATE_COLD PALPATE_INLINE Index Sets::find(std::string_view name, bool of_asse
 }
 
 PALPATE_INLINE void Sets::add(std::vector<int>& members, const Item& item, const IdTable& ids, const TextReader& in,
-                              Index& memberships) {
+                              Index& memberships, const NodesOf& nodes_of) {
   const std::size_t before = members.size();
-  if (item.step < 0) {
+  if (item.step == -2) {
+    nodes_of(item.first, members);
+  } else if (item.step < 0) {
     const std::vector<int> other = sets_[static_cast<std::size_t>(item.first)].members;
     check_memberships(in, memberships + static_cast<Index>(other.size()));
     members.insert(members.end(), other.begin(), other.end());
@@ -62,11 +68,13 @@ PALPATE_INLINE void Sets::add(std::vector<int>& members, const Item& item, const
   check_memberships(in, memberships);
 }
 
-PALPATE_INLINE void Sets::resolve(const IdTable& ids, const TextReader& in, Index& memberships) {
+PALPATE_INLINE void Sets::resolve(const IdTable& ids, const TextReader& in, Index& memberships,
+                                  const NodesOf& nodes_of) {
   for (std::size_t d = 0; d < definitions_.size(); ++d) {
     std::vector<int>& members = sets_[definitions_[d].set].members;
     const std::size_t end = d + 1 < definitions_.size() ? definitions_[d + 1].first_item : items_.size();
-    for (std::size_t i = definitions_[d].first_item; i < end; ++i) add(members, items_[i], ids, in, memberships);
+    for (std::size_t i = definitions_[d].first_item; i < end; ++i)
+      add(members, items_[i], ids, in, memberships, nodes_of);
   }
   for (Set& set : sets_) sort_unique(set.members);
 }

@@ -29,7 +29,9 @@ PALPATE_COLD inline Format read_format(TextReader& in) {
   for (; in.line() == "$Comments"; in.need_line("$MeshFormat or $NOD"))
     while (in.line() != "$EndComments") in.need_line("$EndComments");
   if (in.line() == "$NOD") return {1, false, false};
-  if (in.line() != "$MeshFormat") in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()));
+  if (in.line() != "$MeshFormat")
+    in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()),
+              {"Other programs call their files .msh too. Convert it: ", meshio_command(in.name())});
   in.need_line("a version number");
   const double version = in.real("a version number");
   const bool is2 = version >= 2.0 && version <= 2.2;
@@ -68,7 +70,8 @@ PALPATE_COLD inline void check_order(const TextReader& in, bool& seen, bool in_p
   seen = true;
 }
 
-/// Moves to the last line of a section that is not used.
+/// Moves to the last line of a section that is not used. In binary files some programs write it without a line end
+/// before it.
 inline void skip_section(TextReader& in, const State& state, const std::string& end) {
   if (state.format.is_binary) in.skip_to(end);
   while (in.line() != end) in.need_line(end);
@@ -89,7 +92,10 @@ inline void read_section(TextReader& in, State& state) {
     msh4::read_entities(in, state);
   } else if (section == (is1 ? "$NOD" : "$Nodes")) {
     check_order(in, state.has_nodes, true, {});
-    state.format.major == 4 ? msh4::read_nodes(in, state) : msh2::read_nodes(in, state);
+    state.format.major == 4 ? msh4::read_nodes(in, state) : msh2::read_nodes(in, state, false);
+  } else if (section == "$ParametricNodes" && state.format.major == 2) {
+    check_order(in, state.has_nodes, true, {});
+    msh2::read_nodes(in, state, true);
   } else if (section == (is1 ? "$ELM" : "$Elements")) {
     check_order(in, state.has_elements, state.has_nodes, "the nodes before the elements");
     state.format.major == 4 ? msh4::read_elements(in, state) : msh2::read_elements(in, state);
@@ -101,17 +107,31 @@ inline void read_section(TextReader& in, State& state) {
   need_mark(in, end);
 }
 
+/// A note if the elementary tags are lost and may be labels; no names if they are used.
+PALPATE_COLD inline void finish_labels(State& state) {
+  if (state.by_elementary) state.mesh.names.clear();
+  if (!state.by_elementary && !state.has_physical && state.elementary.looks_like_labels())
+    state.mesh.notes.push_back(joined({"no solid has a physical tag, but the ", state.elementary.different(),
+                                       " elementary tags may be labels of tissues: {.labels = \"elementary\"} in "
+                                       "ReadOptions makes them the regions"}));
+}
+
 }  // namespace detail
 
-PALPATE_INLINE FileMesh parse(std::string_view text, const std::string& name) {
+PALPATE_INLINE FileMesh parse(std::string_view text, const std::string& name, std::string_view labels) {
   TextReader in(text, name);
   State state(name);
+  state.by_elementary = labels == "elementary";
+  if (!state.by_elementary && !labels.empty())
+    refuse(SetupErrorKind::bad_argument, {name, ": labels ", in_quotes(labels), " in a Gmsh file"},
+           "Its labels are the physical tags; {.labels = \"elementary\"} takes the elementary ones");
   state.format = detail::read_format(in);
   for (bool more = state.format.major == 1 || in.next_line(); more; more = in.next_line())
     detail::read_section(in, state);
   if (!state.has_elements)
     in.refuse(SetupErrorKind::bad_file, state.has_nodes ? "a section of elements" : "a section of nodes",
               "the end of the file");
+  detail::finish_labels(state);
   return std::move(state.mesh);
 }
 

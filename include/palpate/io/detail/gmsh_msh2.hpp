@@ -5,8 +5,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh2 {
 
-/// $Nodes (in MSH 1 $NOD): the count, then the nodes.
-void read_nodes(TextReader& in, State& state);
+/// $Nodes (in MSH 1 $NOD): the count, then the nodes. $ParametricNodes adds the entity of each node and its parameters,
+/// which are skipped.
+void read_nodes(TextReader& in, State& state, bool is_parametric);
 
 /// $Elements (in MSH 1 $ELM). An element in several physical groups is listed several times.
 void read_elements(TextReader& in, State& state);

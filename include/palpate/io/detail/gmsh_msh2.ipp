@@ -3,10 +3,23 @@
 
 #include <palpate/io/detail/gmsh_msh2.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh::msh2 {
 
+namespace detail {
+
+/// The rest of a parametric node: dimension and tag of its entity, one parameter on a curve, two on a surface.
+PALPATE_COLD inline void skip_parameters(const Numbers& in) {
+  const Index dimension = in.integer("the dimension of an entity", 0, 3);
+  in.integer("the tag of an entity", -max_int, max_int);
+  in.skip_reals(dimension == 3 ? 0 : static_cast<int>(dimension), "the parameters of a node");
+}
+
+}  // namespace detail
+
 /// Nodes: `id x y z` each.
-PALPATE_INLINE void read_nodes(TextReader& in, State& state) {
+PALPATE_INLINE void read_nodes(TextReader& in, State& state, bool is_parametric) {
   const Index count = read_count(in, "a number of nodes", 8);
   const Numbers numbers(in, state.format.is_binary, state.format.swap);
   state.mesh.positions.reserve(static_cast<std::size_t>(count));
@@ -15,27 +28,41 @@ PALPATE_INLINE void read_nodes(TextReader& in, State& state) {
     numbers.begin("a node");
     state.mesh.node_tags.push_back(numbers.integer("a node id", 1, max_tag));
     state.mesh.positions.push_back(numbers.point());
+    if (is_parametric) detail::skip_parameters(numbers);
     numbers.end("a node");
   }
 }
 
 namespace detail {
 
-/// Reads `count` tags of an element and returns the physical tag, the first of them; 0 if there is none.
-inline int read_tags(const Numbers& in, Index count) {
+/// Reads `count` tags of an element: the physical one, the elementary one, and others. Returns the one that is used; 0
+/// if there is none.
+inline int read_tags(const Numbers& in, State& state, CellShape shape, Index count) {
   const int physical = count > 0 ? read_physical(in) : 0;
-  for (Index i = 1; i < count; ++i) in.integer("a tag", -max_int, max_int);
-  return physical;
+  const auto elementary = count > 1 ? static_cast<int>(in.integer("a tag", -max_int, max_int)) : 0;
+  for (Index i = 2; i < count; ++i) in.integer("a tag", -max_int, max_int);
+  return used_tag(state, shape, physical, elementary);
+}
+
+/// Whether the last cell repeats the one before: an element in two physical groups.
+inline bool is_repeated(const FileMesh& mesh) {
+  if (mesh.cells.size() < 2) return false;
+  const FileCell &last = mesh.cells.back(), &before = mesh.cells[mesh.cells.size() - 2];
+  const NodeId* nodes = mesh.cell_nodes.data() + last.first_node;
+  return last.shape == before.shape && last.tag_set == before.tag_set &&
+         std::equal(nodes, nodes + facts(last.shape).nodes, mesh.cell_nodes.data() + before.first_node);
 }
 
 /// Reads the nodes of an element and adds it.
-inline void add_element(const Numbers& in, const NodeIds& nodes, State& state, const Type& type, Index tag,
-                        int physical) {
+inline void add_element(const Numbers& in, const NodeIds& nodes, State& state, const Type& type, Index tag, int used) {
   const Index place = in.in.place();
-  const auto set = state.sets.find_or_add(state.mesh, physical);
+  const auto set = state.sets.find_or_add(state.mesh, used);
   for (int a = 0; a < facts(type.shape).nodes; ++a)
     state.mesh.cell_nodes.push_back(nodes.find(in.integer("a node id", 1, nodes.last()), in.in));
   state.mesh.add_cell(tag, place, type.shape, set, type.order);
+  if (!state.by_elementary || !is_repeated(state.mesh)) return;
+  state.mesh.cell_nodes.resize(state.mesh.cells.back().first_node);
+  state.mesh.cells.pop_back();
 }
 
 /// An element of MSH 2 as text: `id type ntags tags... nodes...`.
@@ -43,19 +70,19 @@ inline void read_row(const Numbers& in, const NodeIds& nodes, State& state) {
   const Index tag = in.integer("an element id", 1, max_tag);
   const Type& type = read_type(in);
   const Index tags = in.integer("a number of tags", 0, max_int, SetupErrorKind::count_too_large);
-  const int physical = read_tags(in, tags);
-  add_element(in, nodes, state, type, tag, physical);
+  const int used = read_tags(in, state, type.shape, tags);
+  add_element(in, nodes, state, type, tag, used);
 }
 
 /// An element of MSH 1: `id type physical elementary nnodes nodes...`.
 inline void read_old_row(const Numbers& in, const NodeIds& nodes, State& state) {
   const Index tag = in.integer("an element id", 1, max_tag);
   const Type& type = read_type(in);
-  const int physical = read_tags(in, 2);
+  const int used = read_tags(in, state, type.shape, 2);
   const ShapeFacts& shape = facts(type.shape);
   if (const Index given = in.integer("a number of nodes", 1, max_int); given != shape.nodes)
     in.in.refuse(SetupErrorKind::bad_file, {shape.nodes, " nodes for a ", shape.name}, {given});
-  add_element(in, nodes, state, type, tag, physical);
+  add_element(in, nodes, state, type, tag, used);
 }
 
 /// Binary elements of MSH 2 come in blocks: `type count ntags`, then `id tags... nodes...` each. Returns the count.
@@ -66,8 +93,8 @@ inline Index read_block(const Numbers& in, const NodeIds& nodes, State& state, I
       in.integer("a number of tags", 0, static_cast<Index>(in.in.bytes_left()) / 4, SetupErrorKind::count_too_large);
   for (Index i = 0; i < count; ++i) {
     const Index tag = in.integer("an element id", 1, max_int);
-    const int physical = read_tags(in, tags);
-    add_element(in, nodes, state, type, tag, physical);
+    const int used = read_tags(in, state, type.shape, tags);
+    add_element(in, nodes, state, type, tag, used);
   }
   return count;
 }

@@ -84,6 +84,17 @@ PALPATE_COLD inline std::uint32_t physical_set(const TextReader& in, const State
   return it->second;
 }
 
+/// The tags of the elements of an entity that are used.
+PALPATE_COLD inline std::uint32_t used_set(const TextReader& in, State& state, int dimension, Index tag, Index count) {
+  const std::uint32_t physical = physical_set(in, state, dimension, tag);
+  if (dimension == 3 && count > 0) {
+    state.has_physical = state.has_physical || physical != 0;
+    for (int i = 0; i < 2; ++i)
+      state.elementary.add(static_cast<double>(tag));  // one entity is a label, also a small one
+  }
+  return state.by_elementary ? state.sets.find_or_add(state.mesh, static_cast<int>(tag)) : physical;
+}
+
 /// Adds `count` elements to the count of group memberships. A few bytes can put every element into thousands of groups;
 /// the memory for that must stay proportional to the size of the file.
 inline void add_memberships(const TextReader& in, State& state, std::uint32_t set, Index count) {
@@ -104,7 +115,7 @@ inline void read_element_block(const Numbers& in, const NodeIds& nodes, State& s
   const ShapeFacts& shape = facts(type.shape);
   if (shape.dimension != dimension)
     in.in.refuse(SetupErrorKind::bad_file, {"elements of dimension ", dimension}, shape.name);
-  const std::uint32_t set = physical_set(in.in, state, dimension, entity);
+  const std::uint32_t set = used_set(in.in, state, dimension, entity, count);
   add_memberships(in.in, state, set, count);
   for (Index i = 0; i < count; ++i) {
     in.begin("an element");

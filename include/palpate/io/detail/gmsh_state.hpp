@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/io/detail/gmsh_types.hpp>
+#include <palpate/io/detail/labels.hpp>
 #include <palpate/io/detail/node_ids.hpp>
 #include <palpate/io/detail/numbers.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
@@ -24,10 +25,17 @@ struct State {
   TagSets sets;
   PairMap entities;       ///< MSH 4: (dimension, entity tag) -> set of physical tags
   Index memberships = 0;  ///< MSH 4: pairs of an element and a group
+
+  bool by_elementary = false;  ///< elementary tags replace the physical ones
+  bool has_physical = false;   ///< a solid has a physical tag
+  LabelCount elementary;       ///< elementary tags of the solids
 };
 
 /// Reads an element type number; refuses one that is not in `types`.
 const Type& read_type(const Numbers& in);
+
+/// The tag of an element of that shape that is used, and counts both.
+int used_tag(State& state, CellShape shape, int physical, int elementary);
 
 /// Reads a physical tag. A minus sign only marks reversed orientation and is dropped.
 int read_physical(const Numbers& in);

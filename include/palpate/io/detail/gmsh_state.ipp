@@ -14,6 +14,14 @@ PALPATE_INLINE const Type& read_type(const Numbers& in) {
   return *type;
 }
 
+PALPATE_INLINE int used_tag(State& state, CellShape shape, int physical, int elementary) {
+  if (facts(shape).dimension == 3) {
+    state.has_physical = state.has_physical || physical != 0;
+    state.elementary.add(elementary);
+  }
+  return state.by_elementary ? elementary : physical;
+}
+
 PALPATE_INLINE int read_physical(const Numbers& in) {
   const auto tag = static_cast<int>(in.integer("a physical tag", -max_int, max_int));
   return tag < 0 ? -tag : tag;

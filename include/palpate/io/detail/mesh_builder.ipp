@@ -77,6 +77,7 @@ class MeshBuilder {
   void scale_positions(double scale);
   void name_regions();
   void tidy_groups();
+  void add_notes();
   [[noreturn]] void refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const;
   [[noreturn]] void refuse_without_solids() const;
 
@@ -106,6 +107,7 @@ inline PlainMesh MeshBuilder::build(double scale) {
   scale_positions(scale);
   name_regions();
   tidy_groups();
+  add_notes();
   return std::move(mesh_);
 }
 
@@ -241,6 +243,17 @@ inline void MeshBuilder::tidy_groups() {
     group.elements.erase(std::unique(group.elements.begin(), group.elements.end()), group.elements.end());
     drop_repeated_faces(group.faces);
   }
+}
+
+/// A group that the file names and that has no members is more often lost than wanted.
+PALPATE_COLD inline void MeshBuilder::add_notes() {
+  for (const std::string& note : file_.notes) mesh_.notes.push_back(joined({file_.files[0], ": ", note}));
+  std::string names;
+  Index count = 0;
+  for (const Group& group : mesh_.groups.all())
+    if (group.nodes.empty() && ++count <= 5) append(names, {count == 1 ? "'" : ", '", group.name, "'"});
+  if (count > 5) append(names, {" and ", count - 5, " more"});
+  if (count > 0) mesh_.notes.push_back(joined({file_.files[0], ": groups without members: ", names}));
 }
 
 PALPATE_COLD inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const {

@@ -30,6 +30,12 @@ Index binary_integer(TextReader& in, const BinaryLayout& layout, std::string_vie
 /// A finite binary number of 32 or 64 bits.
 double binary_real(TextReader& in, const BinaryLayout& layout, std::string_view what);
 
+/// A binary number, unchecked.
+double any_binary_number(TextReader& in, const BinaryLayout& layout, bool is_real);
+
+/// The number that a word represents, NaN if it is none.
+double any_decimal(std::string_view word);
+
 /// Records of numbers: one line each in text; in binary data an integer takes 4 bytes, a long_integer 8, a real 8.
 class Numbers {
  public:

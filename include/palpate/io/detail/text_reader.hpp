@@ -42,9 +42,11 @@ class TextReader {
   /// The `bytes` raw bytes after the current line. From here on messages report bytes, not lines.
   std::string_view take(std::size_t bytes, std::string_view what);
 
-  /// Moves to the end of the next line that begins with `mark`, skipping everything before it. Refuses if there is
-  /// none.
+  /// Moves to the end of the next line that ends with `mark`, which becomes the current line, skipping everything
+  /// before it: binary data may end without a line end. Refuses if there is none.
   void skip_to(const std::string& mark);
+
+  bool has_last_line_end() const noexcept { return text_.empty() || text_.back() == '\n'; }
 
   /// Refuses a text whose last line has no line end: if a format has no end mark, the last number may be truncated.
   void need_last_line_end() const;

@@ -64,14 +64,20 @@ PALPATE_INLINE std::string_view TextReader::take(std::size_t bytes, std::string_
 }
 
 PALPATE_COLD PALPATE_INLINE void TextReader::skip_to(const std::string& mark) {
-  const std::size_t at = text_.find(joined({"\n", mark}), next_ - std::min<std::size_t>(next_, 1));
+  const auto ends_line = [&](std::size_t at) {
+    std::size_t end = at + mark.size();
+    while (end < text_.size() && is_blank(text_[end])) ++end;
+    return end == text_.size() || text_[end] == '\n';
+  };
+  std::size_t at = text_.find(mark, next_);
+  while (at != text_.npos && !ends_line(at)) at = text_.find(mark, at + 1);
   if (at == text_.npos) refuse(SetupErrorKind::bad_file, mark, "the end of the file");
-  next_ = at + 1;
+  next_ = at;
   next_raw_line();
 }
 
 PALPATE_COLD PALPATE_INLINE void TextReader::need_last_line_end() const {
-  if (!text_.empty() && text_.back() != '\n')
+  if (!has_last_line_end())
     refuse(SetupErrorKind::bad_file, "a line end after the last line", "the end of the file",
            "If the file is whole, add an empty line");
 }

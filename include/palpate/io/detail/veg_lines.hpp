@@ -31,6 +31,8 @@ class Lines {
   std::uint8_t file() const noexcept { return file_.back(); }  ///< its entry in `names`
 
   std::vector<std::string> names;  ///< all files so far
+  std::vector<std::string> notes;  ///< of included lists whose last line has no line end
+  bool reads_list = false;         ///< the present section is a list: such a line end may be missing
 
  private:
   static constexpr TextSyntax syntax{'#', true};

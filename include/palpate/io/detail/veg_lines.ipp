@@ -16,7 +16,11 @@ PALPATE_INLINE bool Lines::next_line() {
   if (stays_) return !(stays_ = false);
   for (;;) {
     while (!in().next_line()) {
-      in().need_last_line_end();
+      const bool is_open_list = reads_list && open_.size() > 1 && !in().has_last_line_end();
+      if (is_open_list)
+        notes.push_back(joined({in().name(), " has no line end after its last line: is its last number whole?"}));
+      else
+        in().need_last_line_end();
       if (open_.size() == 1) return false;
       open_.pop_back();
       file_.pop_back();

@@ -3,6 +3,9 @@
 
 #include <palpate/io/detail/vtk_attributes.hpp>
 
+#include <algorithm>
+#include <functional>
+
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
 PALPATE_COLD PALPATE_INLINE void AttributeReader::begin(bool of_cells, Index expected) {
@@ -25,20 +28,68 @@ PALPATE_COLD PALPATE_INLINE void AttributeReader::skip_metadata() {
   while (in_.next_raw_line() && !in_.line().empty()) {}
 }
 
+PALPATE_COLD PALPATE_INLINE std::span<const std::string_view> region_names(const std::string_view& labels) noexcept {
+  if (labels.empty()) return region_arrays;
+  return {&labels, 1};
+}
+
+PALPATE_COLD PALPATE_INLINE bool has_regions(const std::vector<int>& regions) noexcept {
+  return std::adjacent_find(regions.begin(), regions.end(), std::not_equal_to<>()) != regions.end();
+}
+
+PALPATE_COLD PALPATE_INLINE bool may_be_unknown(std::string_view name) noexcept {
+  return std::find(region_arrays.begin(), region_arrays.end(), name) == region_arrays.end();
+}
+
 PALPATE_INLINE void AttributeReader::read_array(std::string_view name, const NumberType& type, Index components,
                                                 Index tuples) {
-  std::size_t rank = 0;
-  while (rank < region_arrays.size() && region_arrays[rank] != name) ++rank;
-  const bool is_region = of_cells_ && components == 1 && tuples == count_ && type.kind != NumberType::real &&
-                         type.kind != NumberType::text && type.bits > 1 && rank < region_rank_;
   if (tuples > 0 && components > static_cast<Index>(in_.bytes_left()) * 8 / tuples)
     in_.refuse(SetupErrorKind::count_too_large, "an array that fits into the file", {components, " x ", tuples});
-  if (!is_region) return numbers_.skip(type, components * tuples);
+  const bool is_scalar =
+      of_cells_ && components == 1 && tuples == count_ && tuples > 0 && type.kind != NumberType::text && type.bits > 1;
+  if (!is_scalar) return numbers_.skip(type, components * tuples);
+  if (found_.size() < 200) append(found_, {found_.empty() ? "'" : ", '", name, "'"});
+  const auto names = region_names(labels_);
+  const auto rank = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (rank < std::min(region_rank_, names.size()))
+    read_regions(name, type, rank);
+  else
+    count_labels(name, type);
+  numbers_.end("the numbers of an array");
+}
+
+PALPATE_INLINE void AttributeReader::read_regions(std::string_view name, const NumberType& type, std::size_t rank) {
+  std::vector<int> read;
+  if (type.kind == NumberType::real) numbers_.check_fits(type, count_);
+  for (Index i = 0; i < count_; ++i) {
+    if (type.kind != NumberType::real) {
+      read.push_back(static_cast<int>(numbers_.integer(type, "a region number", -max_int, max_int)));
+      continue;
+    }
+    const double number = numbers_.any_number(type);
+    if (is_label(number) && static_cast<Index>(read.size()) == i) read.push_back(static_cast<int>(number));
+    if (static_cast<Index>(read.size()) != i + 1 && !labels_.empty())
+      in_.refuse(SetupErrorKind::bad_argument, {"whole numbers in the array '", name, "'"}, number);
+  }
+  if (static_cast<Index>(read.size()) != count_) return;
   region_rank_ = rank;
-  regions.clear();
-  for (Index i = 0; i < tuples; ++i)
-    regions.push_back(static_cast<int>(numbers_.integer(type, "a region number", -max_int, max_int)));
-  numbers_.end("the region numbers");
+  regions.swap(read);
+}
+
+PALPATE_INLINE void AttributeReader::count_labels(std::string_view name, const NumberType& type) {
+  LabelCount labels;
+  numbers_.check_fits(type, count_);
+  for (Index i = 0; i < count_; ++i) labels.add(numbers_.any_number(type));
+  if (labels.looks_like_labels() && unused_.size() < 10 && may_be_unknown(name))
+    unused_.push_back({std::string(name), labels.different()});
+}
+
+PALPATE_COLD PALPATE_INLINE void AttributeReader::end(FileMesh& mesh) {
+  if (!labels_.empty() && region_rank_ != 0)
+    refuse(SetupErrorKind::bad_argument,
+           {in_.name(), ": expected an array ", in_quotes(labels_), " with a number per cell, found ",
+            found_.empty() ? std::string_view("none") : std::string_view(found_)});
+  if (labels_.empty() && !has_regions(regions)) note_unused_labels(unused_, mesh);
 }
 
 PALPATE_COLD PALPATE_INLINE void AttributeReader::read_field() {

@@ -32,6 +32,14 @@ inline constexpr std::array number_types{
     NumberType{"double", NumberType::real, 64},
     NumberType{"string", NumberType::text, 8},
     NumberType{"utf8_string", NumberType::text, 8},
+    NumberType{"vtktypeint8", NumberType::integer, 8},
+    NumberType{"vtktypeuint8", NumberType::unsigned_integer, 8},
+    NumberType{"vtktypeint16", NumberType::integer, 16},
+    NumberType{"vtktypeuint16", NumberType::unsigned_integer, 16},
+    NumberType{"vtktypeint32", NumberType::integer, 32},
+    NumberType{"vtktypeuint32", NumberType::unsigned_integer, 32},
+    NumberType{"vtktypefloat32", NumberType::real, 32},
+    NumberType{"vtktypefloat64", NumberType::real, 64},
 };
 
 /// ASCII letters in lower case, independent of the locale.
@@ -56,8 +64,14 @@ class NumberStream {
   /// The next number of any type but strings, finite.
   double real(const NumberType& type, std::string_view what);
 
+  /// The next number of any type but strings and bits, unchecked: NaN for a word that is no number.
+  double any_number(const NumberType& type);
+
   /// A count of items of `numbers` numbers each, at most as many as fit in the rest of the file.
   Index count(std::string_view what, Index numbers);
+
+  /// Refuses `count` numbers that do not fit into the rest of the file.
+  void check_fits(const NumberType& type, Index count) const;
 
   /// Skips `count` numbers or strings.
   void skip(const NumberType& type, Index count);

@@ -55,6 +55,12 @@ PALPATE_INLINE double NumberStream::real(const NumberType& type, std::string_vie
   return in_.real(what);
 }
 
+PALPATE_INLINE double NumberStream::any_number(const NumberType& type) {
+  if (is_binary) return any_binary_number(in_, layout_of(type), type.kind == NumberType::real);
+  in_.need_more("a number");
+  return any_decimal(in_.token());
+}
+
 PALPATE_INLINE Index NumberStream::count(std::string_view what, Index numbers) {
   return in_.count(what, numbers * (is_binary ? 4 : 1));
 }
@@ -73,10 +79,14 @@ PALPATE_COLD PALPATE_INLINE void NumberStream::skip_string() {
   in_.take(static_cast<std::size_t>(length), "a string");
 }
 
-PALPATE_INLINE void NumberStream::skip(const NumberType& type, Index count) {
+PALPATE_COLD PALPATE_INLINE void NumberStream::check_fits(const NumberType& type, Index count) const {
   const auto left = static_cast<Index>(in_.bytes_left());
   if (count > (is_binary ? left * 8 / type.bits : left))
     in_.refuse(SetupErrorKind::count_too_large, {count, " numbers"}, {left, " bytes to the end of the file"});
+}
+
+PALPATE_INLINE void NumberStream::skip(const NumberType& type, Index count) {
+  check_fits(type, count);
   if (type.kind == NumberType::text) {
     for (Index i = 0; i < count; ++i) skip_string();
     return;

@@ -36,6 +36,7 @@ class FebioParser {
   Index position_of(pugi::xml_node set, Index id, const IdTable& ids);
   std::string need_name(pugi::xml_node set);
   void number_nodes(const IdTable& nodes);
+  void note_fibres(pugi::xml_node mesh);
 
   Document document_;
   FileMesh mesh_;
@@ -74,6 +75,7 @@ inline FileMesh FebioParser::parse() {
   for (const pugi::xml_node surface : mesh.children("Surface")) add_surface(surface);
   number_nodes(nodes);
   for (const pugi::xml_node set : mesh.children("NodeSet")) add_node_set(set, nodes);
+  note_fibres(mesh);
   return std::move(mesh_);
 }
 
@@ -137,6 +139,24 @@ inline void FebioParser::add_cell(pugi::xml_node element, CellShape shape, int t
   }
   in.end_line("an element");
   mesh_.add_cell(0, line, shape, known_.find_or_add(mesh_, tag), {});
+}
+
+/// Fibres and axes of single elements are in `<MeshData>`, in version 2.0 in `<Geometry>`.
+inline void FebioParser::note_fibres(pugi::xml_node mesh) {
+  std::string_view lost;
+  const auto look_at = [&](std::string_view name) {
+    if (name == "fiber" || name == "mat_axis") lost = name;
+  };
+  for (const pugi::xml_node data : document_.root().child("MeshData").children()) {
+    look_at(data.attribute("type").value());
+    look_at(data.attribute("var").value());
+    look_at(data.attribute("name").value());
+  }
+  for (const pugi::xml_node element : mesh.child("ElementData").children())
+    for (const pugi::xml_node data : element.children()) look_at(data.name());
+  if (!lost.empty())
+    mesh_.notes.push_back(
+        joined({"<ElementData> of the type '", lost, "' is not read: enter directions in Mesh::fibres"}));
 }
 
 inline void FebioParser::number_nodes(const IdTable& nodes) {

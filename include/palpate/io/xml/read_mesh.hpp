@@ -11,21 +11,21 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 bool is_xml(std::string_view text) noexcept;
 
 /// The parsed text of one VTU or FEBio file, else as io::parse_file.
-FileMesh parse_file(std::string_view text, const std::string& name);
+FileMesh parse_file(std::string_view text, const std::string& name, std::string_view labels = {});
 
 /// The parsed file of any format, with the files that belong to it.
-FileMesh read_file_mesh(const std::string& path);
+FileMesh read_file_mesh(const std::string& path, std::string_view labels = {});
 
 /// io::parse_mesh, also for VTU and FEBio.
 template <Element E>
 Mesh<E> parse_mesh(std::string_view text, const std::string& name = "text", const ReadOptions& options = {}) {
-  return build_mesh<E>(xml::parse_file(text, name), options.scale, options.numbering);
+  return build_mesh<E>(xml::parse_file(text, name, options.labels), options.scale, options.numbering);
 }
 
 /// io::read_mesh, also for VTU and FEBio.
 template <Element E>
 Mesh<E> read_mesh(const std::string& path, const ReadOptions& options = {}) {
-  return build_mesh<E>(xml::read_file_mesh(path), options.scale, options.numbering);
+  return build_mesh<E>(xml::read_file_mesh(path, options.labels), options.scale, options.numbering);
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::xml

@@ -16,9 +16,10 @@ namespace detail {
 /// Parses one file ("VTK File Formats", XML; `<AppendedData>` may contain any bytes and is cut off before).
 class VtuParser {
  public:
-  VtuParser(std::string_view text, const std::string& name, std::size_t appended)
+  VtuParser(std::string_view text, const std::string& name, std::string_view labels, std::size_t appended)
       : document_(text.substr(0, appended), name, {}, appended < text.size() ? "</VTKFile>" : ""),
         mesh_(name),
+        labels_(labels),
         bytes_(document_, coding(text, appended)) {}
 
   FileMesh parse();
@@ -30,10 +31,14 @@ class VtuParser {
   void read_points(pugi::xml_node points);
   void read_cells(pugi::xml_node cells);
   void read_regions(pugi::xml_node data);
+  bool take_regions(pugi::xml_node array);
+  void note_labels(pugi::xml_node data);
+  static bool has_number_per_cell(pugi::xml_node array);
   pugi::xml_node named_array(pugi::xml_node parent, std::string_view name);
 
   Document document_;
   FileMesh mesh_;
+  std::string_view labels_;
   VtuBytes bytes_;
   Index points_ = 0, cell_count_ = 0;
   vtk::Cells cells_;
@@ -92,7 +97,7 @@ inline FileMesh VtuParser::parse() {
   cell_count_ = document_.integer(piece, "NumberOfCells", 0, max_int, SetupErrorKind::count_too_large);
   read_points(document_.need_child(piece, "Points"));
   read_cells(document_.need_child(piece, "Cells"));
-  if (const pugi::xml_node data = piece.child("CellData")) read_regions(data);
+  read_regions(piece.child("CellData"));
   vtk::add_cells(cells_, regions_, mesh_);
   return std::move(mesh_);
 }
@@ -141,24 +146,69 @@ inline void VtuParser::read_cells(pugi::xml_node cells) {
   types.end();
 }
 
-/// The first integer array in the order of preference of legacy files.
+inline bool VtuParser::has_number_per_cell(pugi::xml_node array) {
+  const std::string_view components = array.attribute("NumberOfComponents").value();
+  return components.empty() || components == "1";
+}
+
+/// The first array in the order of preference of legacy files.
 inline void VtuParser::read_regions(pugi::xml_node data) {
-  for (const std::string_view name : vtk::region_arrays)
-    for (const pugi::xml_node array : data.children("DataArray")) {
-      const std::string_view components = array.attribute("NumberOfComponents").value();
-      if (array.attribute("Name").value() != name || !(components.empty() || components == "1")) continue;
-      if (VtuArray::type_of(document_, array).kind == vtk::NumberType::real) continue;
-      VtuArray numbers(document_, bytes_, array, cell_count_);
-      for (Index c = 0; c < cell_count_; ++c)
-        regions_.push_back(static_cast<int>(numbers.integer("a region number", -max_int, max_int)));
-      return numbers.end();
+  std::string found;
+  for (const std::string_view name : vtk::region_names(labels_))
+    for (const pugi::xml_node array : data.children("DataArray"))
+      if (regions_.empty() && array.attribute("Name").value() == name && has_number_per_cell(array) &&
+          take_regions(array))
+        return note_labels(data);
+  if (labels_.empty()) return note_labels(data);
+  for (const pugi::xml_node array : data.children("DataArray"))
+    if (found.size() < 200) append(found, {found.empty() ? "'" : ", '", array.attribute("Name").value(), "'"});
+  refuse(SetupErrorKind::bad_argument,
+         {mesh_.files[0], ": expected an array ", in_quotes(labels_), " with a number per cell, found ",
+          found.empty() ? std::string_view("none") : std::string_view(found)});
+}
+
+/// False for real numbers that are not whole.
+inline bool VtuParser::take_regions(pugi::xml_node array) {
+  const bool is_real = VtuArray::type_of(document_, array).kind == vtk::NumberType::real;
+  VtuArray numbers(document_, bytes_, array, cell_count_);
+  std::vector<int> read;
+  for (Index c = 0; c < cell_count_; ++c) {
+    if (!is_real) {
+      read.push_back(static_cast<int>(numbers.integer("a region number", -max_int, max_int)));
+      continue;
     }
+    const double number = numbers.any_number();
+    if (!is_label(number) && !labels_.empty())
+      document_.refuse(array, SetupErrorKind::bad_argument, {"whole numbers in the array '", labels_, "'"}, number);
+    if (!is_label(number)) return false;
+    read.push_back(static_cast<int>(number));
+  }
+  numbers.end();
+  regions_.swap(read);
+  return true;
+}
+
+/// Only a few arrays, so that the bound of decompressed data is not reached by arrays that are not used.
+inline void VtuParser::note_labels(pugi::xml_node data) {
+  if (!labels_.empty() || vtk::has_regions(regions_)) return;
+  std::vector<UnusedLabels> unused;
+  int tried = 0;
+  for (const pugi::xml_node array : data.children("DataArray")) {
+    const std::string_view name = array.attribute("Name").value();
+    const bool is_readable = VtuArray::find_type(array) != nullptr && array.attribute("format");
+    if (!is_readable || !has_number_per_cell(array) || !vtk::may_be_unknown(name) || ++tried > 10) continue;
+    VtuArray numbers(document_, bytes_, array, cell_count_);
+    LabelCount labels;
+    for (Index c = 0; c < cell_count_; ++c) labels.add(numbers.any_number());
+    if (labels.looks_like_labels()) unused.push_back({std::string(name), labels.different()});
+  }
+  note_unused_labels(unused, mesh_);
 }
 
 }  // namespace detail
 
-inline FileMesh parse_vtu(std::string_view text, const std::string& name) {
-  return detail::VtuParser(text, name, std::min(text.find("<AppendedData"), text.size())).parse();
+inline FileMesh parse_vtu(std::string_view text, const std::string& name, std::string_view labels) {
+  return detail::VtuParser(text, name, labels, std::min(text.find("<AppendedData"), text.size())).parse();
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::xml

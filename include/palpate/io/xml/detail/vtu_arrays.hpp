@@ -31,6 +31,9 @@ class VtuArray {
   Index integer(std::string_view what, Index low, Index high);
   double real(std::string_view what);
 
+  /// The next number, unchecked: NaN for a word that is none, or where there is none.
+  double any_number();
+
   /// Refuses more numbers in a text.
   void end();
 
@@ -38,6 +41,9 @@ class VtuArray {
   Index line() const noexcept { return is_text_ ? in_.place() : line_; }  ///< of the next number, or of the array
 
   static const vtk::NumberType& type_of(Document& document, pugi::xml_node array);
+
+  /// The type of an array, nullptr if it is not known.
+  static const vtk::NumberType* find_type(pugi::xml_node array) noexcept;
 
  private:
   BinaryLayout layout() const noexcept { return {type_.bits, type_.kind == vtk::NumberType::integer, swap_}; }

@@ -7,10 +7,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::xml {
 
+inline const vtk::NumberType* VtuArray::find_type(pugi::xml_node array) noexcept {
+  const std::string_view type = array.attribute("type").value();
+  for (const vtk::NumberType& t : vtu_types)
+    if (t.name == type) return &t;
+  return nullptr;
+}
+
 inline const vtk::NumberType& VtuArray::type_of(Document& document, pugi::xml_node array) {
   const std::string_view type = document.need_attribute(array, "type");
-  for (const vtk::NumberType& t : vtu_types)
-    if (t.name == type) return t;
+  if (const vtk::NumberType* known = find_type(array)) return *known;
   document.refuse(array, SetupErrorKind::unsupported, "a type of numbers such as Float64", in_quotes(type));
 }
 
@@ -47,6 +53,12 @@ inline double VtuArray::real(std::string_view what) {
   if (!is_text_) return binary_real(in_, layout(), what);
   in_.need_more(what);
   return in_.real(what);
+}
+
+inline double VtuArray::any_number() {
+  if (!is_text_) return any_binary_number(in_, layout(), type_.kind == vtk::NumberType::real);
+  if (in_.rest().empty()) in_.next_line();
+  return any_decimal(in_.token());
 }
 
 inline void VtuArray::end() {

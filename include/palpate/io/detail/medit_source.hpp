@@ -1,0 +1,72 @@
+// The sections and numbers of a Medit file, text or binary.
+#pragma once
+
+#include <palpate/io/detail/medit_sections.hpp>
+#include <palpate/io/detail/numbers.hpp>
+#include <palpate/io/file_mesh.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace io::medit {
+
+/// Whether a text begins like a binary Medit file.
+bool is_binary(std::string_view text) noexcept;
+
+/// Reads one file (libMeshb, "The format"). In a text, numbers may be on any lines, and sections that are not read are
+/// skipped up to the next word; in a binary file every section gives the byte of the next one.
+class Source {
+ public:
+  /// Reads the version.
+  Source(std::string_view text, const std::string& name);
+
+  TextReader in;
+
+  /// Moves to the next section that is read, nullptr at the end. Refuses one that is repeated.
+  const Section* next_section();
+
+  /// Refuses data of a section that do not end where the next one begins.
+  void end_section(const Section& section) const;
+
+  /// Whether there was an End.
+  bool has_end() const noexcept { return has_end_; }
+
+  /// Moves to the next line of a text whose present one has no more numbers, for the place of an item.
+  void begin(std::string_view what) {
+    if (!is_binary_) in.need_more(what);
+  }
+
+  Index integer(std::string_view what, Index low, Index high,
+                SetupErrorKind kind = SetupErrorKind::index_out_of_range) {
+    if (is_binary_) return binary_integer(in, {version_ < 4 ? 32 : 64, true, swap_}, what, low, high, kind);
+    in.need_more(what);
+    return in.integer(what, low, high, kind);
+  }
+
+  /// The dimension of space, in binary files of 32 bits in every version.
+  void need_dimension_3();
+
+  double real(std::string_view what) {
+    if (is_binary_) return binary_real(in, {real_bits, true, swap_}, what);
+    in.need_more(what);
+    return in.real(what);
+  }
+
+  /// A count of rows of so many numbers, at most as many as fit into the rest of the file.
+  Index count(std::string_view what, Index reals, Index integers);
+
+  int real_bits = 64;  ///< of the real numbers of a binary file
+
+ private:
+  const Section* next_text_section();
+  const Section* next_binary_section();
+  bool ends_here();
+  Index position() const noexcept { return static_cast<Index>(in.size() - in.bytes_left()); }
+
+  bool is_binary_, swap_ = false, has_end_ = false;
+  Index version_ = 1, next_ = -1;  ///< next_: byte of the next section in a binary file, 0 for none
+  std::array<bool, sections.size()> is_known_{};
+};
+
+}}}  // namespace palpate::PALPATE_ABI::io::medit
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/io/detail/medit_source.ipp>
+#endif
