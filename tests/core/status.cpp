@@ -64,6 +64,7 @@ TEST_CASE("every flag has one bit and one name", "[core][status]") {
   CHECK(name(StatusFlag::coarse_contact) == "CoarseContact");
   CHECK(name(StatusFlag::large_displacement) == "LargeDisplacement");
   CHECK(name(StatusFlag::lost_contact) == "LostContact");
+  CHECK(name(StatusFlag::material_exceeded) == "MaterialExceeded");
 }
 
 TEST_CASE("counters add one per set flag and tick", "[core][status]") {
@@ -72,16 +73,16 @@ TEST_CASE("counters add one per set flag and tick", "[core][status]") {
   for (int tick = 0; tick < 1000; ++tick) {
     Status s;
     if (tick % 2 == 0) s |= StatusFlag::saturated;
-    if (tick % 10 == 0) s |= StatusFlag::lost_contact;
+    if (tick % 10 == 0) s |= StatusFlag::material_exceeded;
     counters.count(s);
   }
   CHECK(counters[StatusFlag::saturated] == 500);
-  CHECK(counters[StatusFlag::lost_contact] == 100);
+  CHECK(counters[StatusFlag::material_exceeded] == 100);
   CHECK(counters[StatusFlag::stale] == 0);
   CHECK(counters.at(1) == 500);
   CHECK(counters.at(status_flag_count - 1) == 100);
   STATIC_REQUIRE(noexcept(counters.count(Status{})));
   std::ostringstream out;
   out << counters << "; " << StatusCounters{};
-  CHECK(out.str() == "Saturated 500 LostContact 100; ok");
+  CHECK(out.str() == "Saturated 500 MaterialExceeded 100; ok");
 }

@@ -1,6 +1,7 @@
 // Linear tetrahedra without volumetric locking: the change of volume is averaged over neighbours.
 #pragma once
 
+#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
@@ -45,6 +46,7 @@ class AveragedTetrahedra {
       : layout_(make_batches<S, N>(body, 180.0, limits)), materials_(body.materials) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     sums_.assign(layout_.nodes.size(), S(0));
+    range_.resize(layout_.batches.size());
     place_averages();
     for (const TetrahedronBlock& block : layout_.blocks)
       for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
@@ -62,13 +64,17 @@ class AveragedTetrahedra {
   /// force = internal force at displacement u [N]. The report is about the elements' own J; a material that needs J >
   /// 0 is reported as inadmissible where J <= 0.
   DeformationReport force(const VectorX& u, VectorX& f) noexcept {
-    const DeformationReport report = average_volumes(u);
+    DeformationReport report = average_volumes(u);
+    range_.next_turn();
     clear(sums_);
     for_each_element(u, [&](const TetrahedronBlock& block, const Batch& batch, const Gradient& gradient) {
       const Averaged a = averaged(block, batch, gradient);
+      range_.observe(static_cast<std::size_t>(&batch - layout_.batches.data()), material_of(block), a.ratio * gradient,
+                     batch.volume);
       const Number share = S(0.25f) * batch.volume * a.pressure / a.mean;
       add_to_rows(batch, sums_.data() + block.first_row, select(a.mean > least(), share, Number(S(0))));
     });
+    report.beyond_range = range_.count();
     gather_sums(pressure_);
     pressure_ = pressure_.cwiseProduct(inverse_volume_);
 
@@ -181,6 +187,7 @@ class AveragedTetrahedra {
   std::vector<S> rows_, sums_;                        // by row: force, four numbers; a number
   std::vector<std::int32_t> place_;                   // by row: index of the average
   VectorX inverse_volume_, volume_ratio_, pressure_;  // by node and region; volume of its elements in that region
+  detail::RangeWatch<M, S, N> range_;
   double probe_length_ = 0.0;
 };
 

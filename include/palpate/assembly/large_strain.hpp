@@ -17,6 +17,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/mean_dilatation.hpp>
 #include <palpate/element/smoothed.hpp>
+#include <palpate/material/detail/material_range.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/mesh.hpp>
@@ -90,17 +91,19 @@ class LargeStrain final : public ElasticForces {
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
-      bool inverted = false;
+      bool inverted = false, beyond = false;
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         inverted = !observe(determinant(f), e, report) || inverted;
         const auto& material = material_at(e, g);
+        beyond = beyond || detail::is_beyond_range(material, f);
         if (material.admits(f))
           fe.noalias() += g.volume * matrix3(material.stress(f)) * g.gradient.transpose();
         else
           report.admissible = false;
       }
       report.inverted += inverted ? 1 : 0;
+      report.beyond_range += beyond ? 1 : 0;
       for (int a = 0; a < E::nodes; ++a) all.template segment<3>(3 * Index{mesh().element_node(e, a)}) += fe.col(a);
     }
     return report;

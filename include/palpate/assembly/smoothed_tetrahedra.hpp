@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/detail/node_elements.hpp>
+#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/strain_averages.hpp>
 #include <palpate/assembly/detail/strain_domains.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -85,7 +86,9 @@ class SmoothedTetrahedra {
   /// averages are not.
   double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept {
     report = find_gradients(u);
+    range_.next_turn();
     const double energy = find_stresses();
+    report.beyond_range = range_.count();
     report.admissible = std::isfinite(energy);
     for (const TetrahedronBlock& block : layout_.blocks) add_forces(block);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
@@ -153,6 +156,7 @@ class SmoothedTetrahedra {
   }
   void make_room() {
     stresses_.assign(static_cast<std::size_t>(row_size * edges_.size()), S(0));
+    range_.resize(edges_.batches().size());
     pressures_.assign(static_cast<std::size_t>(nodes_.size()), S(0));
     averages_ = pressures_;
     rows_.assign(4 * layout_.nodes.size(), S(0));
@@ -244,6 +248,7 @@ class SmoothedTetrahedra {
     const Number j = determinant(f, c), own = max(j, least), around = edges_.mean_numbers(b, ratios_.data()),
                  mean = max(around, least), ratio = detail::cube_root(mean) / detail::cube_root(own);
     const Gradient seen = ratio * f;
+    range_.observe(b, material, seen, batch.volume);
     const Volume v = volume(material, bulk_[static_cast<std::size_t>(batch.region)], mean / own * j);
     const Gradient stress = material.stress(seen) - (v.pressure * ratio * ratio) * c;
     const Number third = S(1.0 / 3.0) * contract(stress, seen);
@@ -293,6 +298,7 @@ class SmoothedTetrahedra {
   std::vector<S> stresses_;                        // of edges
   std::vector<S> averages_, pressures_;            // of nodes
   std::vector<S> rows_;                            // forces, four numbers per row of the layout
+  detail::RangeWatch<M, S, N> range_;              // of edges
   double probe_length_ = 0.0;
 };
 

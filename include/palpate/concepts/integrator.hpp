@@ -14,6 +14,7 @@ struct DeformationReport {
   Index worst_element = -1;                 ///< element with the smallest det F
   Index inverted = 0;                       ///< elements with a point where det F <= 0
   bool admissible = true;                   ///< every material admits its deformation, where this was checked
+  Index beyond_range = 0;                   ///< elements (domains of Smoothed) beyond the range of their material
 };
 
 /// The internal force of a body as a function of the displacement of all dofs (x y z per node).

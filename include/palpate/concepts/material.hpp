@@ -46,7 +46,10 @@ concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3&
 ///                              that such a material cannot be used as a linear one by mistake.
 ///   admits(F) -> bool          whether the material is valid at F. If not, the other functions may return anything.
 ///   survives_inversion         whether it is valid at singular and inverted F (J <= 0); otherwise J > 0 is required.
-/// These functions do not allocate or throw. Laws: testing/hyperelastic_laws.hpp.
+/// A material may have `is_beyond_range(F) -> bool`: whether it admits F and yet describes no solid there, because it
+/// yields to compression or is not strongly elliptic. Without it that follows from the tangent, where F is clearly
+/// deformed. With `range_volume_ratio() -> double`, a J above which no F is beyond the range, the check costs next to
+/// nothing. These functions do not allocate or throw. Laws: testing/hyperelastic_laws.hpp.
 template <class M>
 concept HyperelasticMaterial =
     Material<M> && requires(const M& m, const Tensor3<double>& f, const Tensor3<float>& single,

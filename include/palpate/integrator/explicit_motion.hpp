@@ -35,8 +35,9 @@ struct ExplicitOptions {
 ///                  constrained dofs, or are not finite; the body returns to its last good state, and stays there until
 ///                  restart()
 /// A step that is taken reports the state at its end:
-///   inverted         elements are inverted (deformation() gives their number and the worst one)
-///   degraded_model   a material was evaluated where it is not admissible, and its stress there is meaningless
+///   inverted           elements are inverted (deformation() gives their number and the worst one)
+///   material_exceeded  elements are deformed beyond the range of their material
+///   degraded_model     a material was evaluated where it is not admissible, and its stress there is meaningless
 /// The energy of a stable motion near the limit oscillates up to 1 / (1 - dt / limit) times its value; the check allows
 /// for that. Cost per step: one force, 1/limit_every forces, 1/energy_every energies, and about 20 numbers per dof.
 template <ForceOperator Force, ExplicitScheme Scheme>
@@ -246,6 +247,7 @@ class ExplicitMotion {
   Status seen() const noexcept {
     Status status;
     if (state_.deformation.inverted > 0) status.set(StatusFlag::inverted);
+    if (state_.deformation.beyond_range > 0) status.set(StatusFlag::material_exceeded);
     if (!state_.deformation.admissible) status.set(StatusFlag::degraded_model);
     return status;
   }

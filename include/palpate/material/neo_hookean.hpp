@@ -19,7 +19,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// W = mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2 with Lame's constants of small strain. The volume term
 /// has lambda + mu because the term -mu (J - 1) reduces the bulk stiffness by mu. A polynomial: finite for every F, and
-/// a flat or inverted element is pushed back. Exception: at F = 0 exactly, with all nodes of an element at one point,
+/// a flat or inverted element is pushed back. Compressible material has no barrier: from a volume ratio of about a half
+/// on it yields (is_beyond_range). Exception: at F = 0 exactly, with all nodes of an element at one point,
 /// the stress is zero. Cost of stress: about 60 additions and multiplications, no division except in the constants;
 /// keep the material in a local variable outside of a loop, so that the compiler computes the constants once.
 struct NeoHookean {
@@ -53,6 +54,16 @@ struct NeoHookean {
   Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return all_finite(f); }
+  /// Whether F is compressed so far that the material does not resist any more (docs/materials.md). With c = mu -
+  /// (lambda + mu) (J - 1), the second derivative of W by the logarithms of the stretches, under constant nominal
+  /// stress, is sum of (mu stretch_i^2 + c J) y_i^2 + b (sum of y_i)^2, b = J ((lambda + mu) (2 J - 1) - mu): positive
+  /// definite while 1 + b sum of 1 / (mu stretch_i^2 + c J) > 0. The material is strongly elliptic everywhere.
+  bool is_beyond_range(const Tensor3<double>& f) const noexcept;
+  /// No F with a larger J is beyond the range: c J bounds the terms of that sum.
+  double range_volume_ratio() const noexcept {
+    const auto [lambda, mu] = detail::lame<double>(small_strain());
+    return 0.4 + 0.4 * mu / (lambda + mu);
+  }
 };
 
 }}  // namespace palpate

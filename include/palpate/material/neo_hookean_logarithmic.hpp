@@ -55,6 +55,8 @@ struct NeoHookeanLogarithmic {
   Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
+  /// Never in compression. Expanded beyond J = exp(1 + mu / lambda) it may lose strong ellipticity.
+  bool is_beyond_range(const Tensor3<double>& f) const noexcept;
 };
 
 }}  // namespace palpate

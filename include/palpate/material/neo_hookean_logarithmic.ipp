@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/material/neo_hookean_logarithmic.hpp>
+#include <palpate/material/detail/material_range.hpp>
 #include <palpate/material/detail/invariants.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -27,6 +28,12 @@ PALPATE_INLINE Matrix9 NeoHookeanLogarithmic::tangent(const Tensor3<double>& f) 
   w.volume = (lambda * log_volume - mu) / j;
   w.volume_volume = (lambda * (1.0 - log_volume) + mu) / j / j;
   return detail::tangent_of_invariants(f, w);
+}
+
+PALPATE_INLINE bool NeoHookeanLogarithmic::is_beyond_range(const Tensor3<double>& f) const noexcept {
+  const auto [lambda, mu] = detail::lame<double>(small_strain());
+  const double j = determinant(f);
+  return j > 1.0 && lambda * (std::log(j) - 1.0) > mu && admits(f) && !detail::is_stable(f, tangent(f));
 }
 
 }}  // namespace palpate

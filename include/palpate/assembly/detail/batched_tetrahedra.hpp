@@ -1,6 +1,7 @@
 // Internal force of tetrahedra at any strain, several elements simultaneously; used for explicit integration.
 #pragma once
 
+#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/tetrahedron_kernels.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
@@ -43,6 +44,7 @@ class BatchedTetrahedra {
       : layout_(make_batches<S, N>(body, 160.0, limits)), materials_(body.materials) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     reports_.resize(layout_.blocks.size());
+    range_.resize(layout_.batches.size());
     probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
   }
 
@@ -53,6 +55,7 @@ class BatchedTetrahedra {
   /// computed and the report states it: det F <= 0 for a material that needs det F > 0, or a non-finite value. (Only
   /// LargeStrain checks narrower bounds of a material.)
   DeformationReport force(const VectorX& u, VectorX& f) noexcept {
+    range_.next_turn();
     for (Index b = 0; b < block_count(); ++b) compute_block(b, u);
     add_up(0, layout_.node_count(), f);
     return report();
@@ -98,9 +101,12 @@ class BatchedTetrahedra {
       layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
         watch.observe(determinant(f, cofactor(f)), batch.volume);
         batch.add_force(material.stress(f), rows);
+        if constexpr (!detail::RangedByVolume<M>) observe_range(batch, material, f);
       });
     }
-    reports_[static_cast<std::size_t>(index)] = watch.summary(layout_, block, M::survives_inversion);
+    DeformationReport& report = reports_[static_cast<std::size_t>(index)];
+    report = watch.summary(layout_, block, M::survives_inversion);
+    report.beyond_range = beyond_range(block, material, u, report.smallest_volume_ratio);
   }
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
@@ -110,6 +116,21 @@ class BatchedTetrahedra {
  private:
   using Batch = TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Lanes<S, N>>;
+
+  void observe_range(const Batch& batch, const M& material, const Gradient& f) noexcept {
+    range_.observe(static_cast<std::size_t>(&batch - layout_.batches.data()), material, f, batch.volume);
+  }
+  /// Elements of a block beyond the range of their material.
+  Index beyond_range(const TetrahedronBlock& block, const M& material, const VectorX& u, double smallest) noexcept {
+    if constexpr (detail::RangedByVolume<M>) {
+      if (smallest > material.range_volume_ratio()) return 0;
+      layout_.for_each_gradient(block, u,
+                                [&](const Batch& batch, const Gradient& f) { observe_range(batch, material, f); });
+    }
+    const auto first = static_cast<std::size_t>(block.first_batch);
+    return range_.count(first, first + static_cast<std::size_t>(block.batch_count));
+  }
+
   // by processor, with palpate::compiled
   static constexpr bool has_kernel = std::is_same_v<M, NeoHookean> && N == any_flags::tetrahedra_at_once<S>;
 
@@ -117,6 +138,7 @@ class BatchedTetrahedra {
   std::vector<M> materials_;                // by region
   std::vector<S> rows_;                     // force on every row, four numbers per row
   std::vector<DeformationReport> reports_;  // by block
+  detail::RangeWatch<M, S, N> range_;
   double probe_length_ = 0.0;
 };
 

@@ -1,6 +1,7 @@
 // Matrix-free force and stiffness of linear tetrahedra in frames that rotate with the elements.
 #pragma once
 
+#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
@@ -43,6 +44,8 @@ class CorotatedTetrahedra {
   explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
       : layout_(make_batches<S, N>(body, 280.0, limits)) {
     for (const Material& material : body.materials) materials_.push_back(detail::lame<Lane>(material.base));
+    laws_ = body.materials;
+    range_.resize(layout_.batches.size());
     rows_.assign(4 * layout_.nodes.size(), S(0));
     reports_.resize(layout_.blocks.size());
     for (const Batch& batch : layout_.batches) rotated_.push_back(at_rest(batch));
@@ -66,9 +69,12 @@ class CorotatedTetrahedra {
   /// Computes the rotations at u; f = internal force there [N], energy [J]. Finite if |F|^2 is finite in S.
   DeformationReport linearise(const VectorX& u, VectorX& f, double& energy) noexcept {
     energy = 0.0;
+    range_.next_turn();
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
-    return detail::report_of(reports_);
+    DeformationReport report = detail::report_of(reports_);
+    report.beyond_range = range_.count();
+    return report;
   }
 
   /// y = K x with the stiffness K at the state of the last linearise().
@@ -151,6 +157,7 @@ class CorotatedTetrahedra {
                           r = tracked_rotation(f, rotated.rotation), d = f - r;
       const Lane ratio = determinant(f, c), swelling = ratio - Lane(S(1));
       watch.observe(ratio, batch.volume);
+      range_.observe(static_cast<std::size_t>(b), laws_[static_cast<std::size_t>(block.region)], f, batch.volume);
       stored += batch.volume * detail::corotated_energy(material, d, swelling);
       batch.add_force(detail::corotated_stress(material, d, c, swelling), rows);
       rotate_gradients(r, batch, rotated);
@@ -209,6 +216,8 @@ class CorotatedTetrahedra {
   std::vector<RotatedBatch> rotated_;
   mutable std::vector<S> rows_;             // force on every row, four numbers per row: a workspace
   std::vector<DeformationReport> reports_;  // by block
+  std::vector<Material> laws_;              // by region
+  detail::RangeWatch<Material, S, N> range_;
 };
 
 }}  // namespace palpate

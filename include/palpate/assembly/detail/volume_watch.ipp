@@ -11,6 +11,7 @@ PALPATE_INLINE void add_report(const DeformationReport& part, DeformationReport&
     all.worst_element = part.worst_element;
   }
   all.inverted += part.inverted;
+  all.beyond_range += part.beyond_range;
   all.admissible = all.admissible && part.admissible;
 }
 

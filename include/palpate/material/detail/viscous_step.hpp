@@ -5,6 +5,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/detail/deformation.hpp>
+#include <palpate/material/detail/material_range.hpp>
 
 #include <Eigen/LU>
 
@@ -77,6 +78,8 @@ struct ViscousStep {
     return t;
   }
   bool admits(const Tensor3<double>& f) const noexcept { return base.admits(f) && determinant(f) > 0.0; }
+  /// That of the base: relaxation scales its stress.
+  bool is_beyond_range(const Tensor3<double>& f) const noexcept { return detail::is_beyond_range(base, f); }
 };
 
 }}  // namespace palpate

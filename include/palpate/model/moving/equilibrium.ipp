@@ -20,6 +20,9 @@ PALPATE_INLINE std::string describe(const EquilibriumReport& r) {
   if (r.deformation.inverted > 0)
     text += ", " + std::to_string(r.deformation.inverted) + " inverted elements, the worst is " +
             std::to_string(r.deformation.worst_element);
+  if (r.deformation.beyond_range > 0)
+    text += ", " + std::to_string(r.deformation.beyond_range) +
+            " elements beyond the range of their material, which yields there: see docs/materials.md";
   return text;
 }
 

@@ -76,6 +76,7 @@ class CorotatedTissueMotion final : public TissueMotion {
     const CorotatedStep done = motion_.step(h);
     MotionStep step{done.taken, {}, done.deformation};
     if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
+    if (done.deformation.beyond_range > 0) step.status.set(StatusFlag::material_exceeded);
     if (!done.taken || !done.energy_bounded || !(done.solve.error <= Motion::tolerable_error))
       step.status.set(StatusFlag::solver_not_converged);
     return step;

@@ -93,7 +93,8 @@ class MovingTissue : public ModelBase {
 
   // TissueModel: the thread that ticks
 
-  /// Takes the newest surface. Status: `inverted` while elements are inverted; solver_not_converged when the last step
+  /// Takes the newest surface. Status: `inverted` while elements are inverted; `material_exceeded` while some are
+  /// beyond the range of their material; solver_not_converged when the last step
   /// ended far from its solution; degraded_model when a step could not be corrected for the tool forces, so that only
   /// the next one includes them, or when there were more than most_forces; non_finite_force when the last `end_tick`
   /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up; large_displacement when

@@ -14,7 +14,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Result of a step.
 struct MotionStep {
   bool taken = false;  ///< false: nothing has changed
-  /// `inverted`, `solver_not_converged` when the step ended far from its solution, or other flags of the motion.
+  /// `inverted`, `material_exceeded`, `solver_not_converged` when the step ended far from its solution, or other flags
+  /// of the motion.
   Status status;
   DeformationReport deformation{};
   double relative_residual = 0.0;  ///< of the forces at the end of the step, if the motion knows it

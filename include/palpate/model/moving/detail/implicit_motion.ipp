@@ -15,6 +15,7 @@ PALPATE_INLINE MotionStep ImplicitMotion::step(double h) noexcept {
   const StepReport done = motion_.step(h);
   MotionStep step{done.taken, {}, done.deformation};
   if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
+  if (done.deformation.beyond_range > 0) step.status.set(StatusFlag::material_exceeded);
   const bool accurate = done.newton.converged || done.newton.relative_residual <= tolerable_residual;
   if (!done.taken || !done.energy_bounded || !accurate) step.status.set(StatusFlag::solver_not_converged);
   return step;

@@ -121,6 +121,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
+  if (deformation_.beyond_range > 0) done.status.set(StatusFlag::material_exceeded);
   if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);
   return done;
 }

@@ -1,0 +1,52 @@
+// Whether a large-strain material still describes a solid at a deformation.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
+#include <palpate/core/types.hpp>
+
+#include <concepts>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Whether a material with this tangent dP/dF at F, J > 0, is stable there in both of these senses:
+///   1. Compressed (J < 0.9), it resists every further change of its stretches along fixed axes under constant nominal
+///      stress: the second derivatives of W by the stretches are positive definite. Where they are not, the force on a
+///      body with free sides falls while it is compressed (dP/d(stretch) = 0 at the limit), and its sides draw in. In
+///      tension they may be indefinite: a cube under equal dead loads is not stable (Rivlin 1948).
+///   2. It is strongly elliptic: A_ijkl a_i N_j a_k N_l > 0, so that no fold forms by itself. Checked for 13 directions
+///      N along and between the principal axes, spread evenly at rest, and 13 spread evenly in the deformed state.
+/// About 2 us.
+bool is_stable(const Tensor3<double>& f, const Matrix9& tangent) noexcept;
+
+/// The square of |F^T F - I| below which no material is examined: one stretch of 0.71 or 1.22.
+inline constexpr double examined_strain = 0.25;
+
+/// A material that knows the range in which it is valid, and that no J above `range_volume_ratio()` is beyond it.
+template <class M>
+concept RangedByVolume = requires(const M& m, const Tensor3<double>& f) {
+  { m.range_volume_ratio() }
+  noexcept->std::same_as<double>;
+  { m.is_beyond_range(f) }
+  noexcept->std::same_as<bool>;
+};
+
+/// Whether F is beyond the range of a material: its own `is_beyond_range(F)`, or where it has none, whether F is
+/// clearly deformed and the material not stable there. False for deformations that the material does not admit or that
+/// are inverted, which are reported as such.
+template <class M>
+bool is_beyond_range(const M& material, const Tensor3<double>& f) noexcept {
+  if constexpr (requires { material.is_beyond_range(f); }) {
+    return material.is_beyond_range(f);
+  } else {
+    const Tensor3<double> strain = plus_identity(transpose_product(f, f), -1.0);
+    if (!(contract(strain, strain) > examined_strain)) return false;
+    return determinant(f) > 0.0 && material.admits(f) && !is_stable(f, material.tangent(f));
+  }
+}
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/material/detail/material_range.ipp>
+#endif
