@@ -1,5 +1,8 @@
 // The force of every tick against that of a contact problem that iterates to convergence.
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/mesh/generators.hpp>
@@ -100,6 +103,55 @@ TEST_CASE("with a single linearisation the force of a fast sphere is within two 
   INFO("worst " << worst);
   CHECK(worst > 0.0);
   CHECK(worst <= 2e-3);
+}
+
+/// A block and the same one turned by half a turn about the x-axis through `centre`, as a group.
+struct Slot {
+  using Block = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+
+  explicit Slot(double gap)
+      : centre(0.0, 0.0, height + 0.5 * gap), below(mesh(), scene(), tissue), above(mesh(), scene(), tissue) {
+    Eigen::Isometry3d pose(Eigen::Translation3d(0.0, 0.0, 2.0 * centre[2]));
+    pose.rotate(Eigen::AngleAxisd(std::numbers::pi, Vector3::UnitX()));
+    above.set_pose(pose);
+  }
+  static Mesh<Tet4> mesh() {
+    return box_tet4({20e-3, 20e-3, height}, {10, 10, 5}, BoxSplit::five_mirrored, {-10e-3, -10e-3, 0.0});
+  }
+  static Scene scene() { return Scene().fix("z0").touch("z1"); }
+  static constexpr LinearElastic tissue{.youngs_modulus = 10e3, .poisson_ratio = 0.45, .density = 1000.0};
+
+  Vector3 centre;
+  Block below, above;
+};
+
+TEST_CASE("a sphere in a slot whose contact forces cancel is neither unsettled nor pressed deeper than it is",
+          "[contact][accuracy]") {
+  const double depth = 0.5e-3;
+  Slot slot(2.0 * (radius - depth));
+  TissueGroup group(slot.below, slot.above);
+  for (const double friction : {0.0, 0.3}) {
+    HapticServo servo(group, SphereTool{.radius = radius}, ServoOptions{.contact = {.friction = friction}});
+    ToolState state;
+    StatusCounters flags;
+    double deepest = 0.0, pressed = 0.0, largest = 0.0;
+    for (int i = 0; i < 400; ++i) {
+      state.time += 1e-3;
+      state.position = slot.centre + 1e-6 * std::sin(0.1 * i) * Vector3::UnitZ();
+      flags.count(servo.tick(state).status);
+      double sum = 0.0;
+      for (const ToolContact& c : servo.contacts()) sum += c.force;
+      pressed = std::max(pressed, sum);
+      largest = std::max(largest, servo.contact_force().norm());
+      deepest = std::max(deepest, servo.indentation());
+    }
+    CAPTURE(friction, pressed, largest);
+    REQUIRE(pressed > 0.01);
+    REQUIRE(largest < 0.1 * pressed);
+    CHECK(flags[StatusFlag::solver_not_converged] == 0);
+    CHECK(flags[StatusFlag::large_displacement] == 0);
+    CHECK(deepest <= 2.0 * depth);
+  }
 }
 
 }  // namespace tick_accuracy

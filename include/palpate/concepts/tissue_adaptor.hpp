@@ -26,6 +26,10 @@ class TissueAdaptor {
   std::uint64_t compliance_revision() const noexcept { return tissue().compliance_revision(); }
   double compliance_bound(int j) const noexcept { return tissue().compliance_bound(j); }
   double compliance_floor() const noexcept { return tissue().compliance_floor(); }
+  Vector3 displacement_of(int i, std::span<const VertexForce> forces) const noexcept
+      requires detail::HasOwnDisplacement<Tissue> {
+    return tissue().displacement_of(i, forces);
+  }
 
   auto prefetch(std::span<const int> vertices) noexcept { return tissue_->prefetch(vertices); }
   auto begin_tick() noexcept { return tissue_->begin_tick(); }

@@ -6,6 +6,7 @@
 #include <palpate/contact/detail/proxy_motion.hpp>
 #include <palpate/contact/detail/row_shares.hpp>
 #include <palpate/contact/grasp.hpp>
+#include <palpate/contact/linear_model_error.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -64,7 +65,11 @@ class ContactProblem {
   /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, from the linear
   /// model, and from what was omitted in the tick. The bound is infinite where nothing was measured, and while a column
   /// of the compliance is missing: what an assumed one does to the force has no bound. No allocation; O(contacts).
-  ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) const noexcept;
+  ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) noexcept;
+  /// What the error of a force on a tool is relative to [N]: detail/contact_rows.hpp.
+  double scale_of_force(std::size_t t, double force) const noexcept {
+    return force_scale(force, rows_.pressing_force(t));
+  }
   /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
   /// the deepest push. The force is too small by that part of the true force, or less. 0 when every point has a row.
   double missing_depth() const noexcept;
@@ -99,8 +104,20 @@ class ContactProblem {
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   void share_rows(Tools tools) noexcept;
-  void add_model_errors(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
-                        ForceError& error) const noexcept;
+  /// The contacts of a tool on one body; their vertices are numbered in that body.
+  struct BodyContacts {
+    std::span<const Contact> rows;
+    Vector3 force = Vector3::Zero();
+    double scale = 0.0;  ///< force_scale [N]
+    double depth = 0.0;  ///< indentation [m]
+  };
+  BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
+  double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
+  ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
+  void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
+                  const ContactTool& tool, ForceError& error) const noexcept;
+  void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
+                        std::size_t t, SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
@@ -117,6 +134,7 @@ class ContactProblem {
   LocalContact local_;
   RowShares shares_;
   std::array<Grasp, maximum_tools> grasps_{};
+  std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
   bool late_ = false;                             // a column of the compliance is missing

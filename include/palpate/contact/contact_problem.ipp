@@ -20,7 +20,8 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
       candidates_(surface, radii, parameters_.sample_spacing, parameters_.capacity, parameters_.local_compliance),
       rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
       pressing_(at(parameters_.capacity)),
-      violated_(at(candidates_.maximum())) {
+      violated_(at(candidates_.maximum())),
+      on_body_(surface.body_count() > 1 ? at(parameters_.capacity) : 0) {
   require_dense_points(surface, radii.smallest);
 }
 
@@ -109,7 +110,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     follow(tools);
     if (rows_.has_moving()) proxies_.note_alternation(tools);
     proxies_.end(tools);
-    change = std::max(local_change, proxies_.relative_change(tools));
+    change = std::max(local_change, proxies_.relative_change(tools, rows_.largest_force_scale(tools)));
     if (has_converged(tools, iteration, local_change, before, change)) break;
     before = change;
   }
@@ -147,9 +148,14 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
   return shares_.deepest() > 0.0 ? shares_.deepest() / std::max(shares_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
+/// Mean depth of contacts with that force and push work, weighted with their forces, without the coupling.
+PALPATE_INLINE double ContactProblem::depth_of(double work, double scale, const Vector3& force,
+                                               const ContactTool& tool) const noexcept {
+  return scale > 0.0 ? std::max(0.0, (work - tool.compliance * force.dot(tool.force)) / scale) : 0.0;
+}
+
 PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTool& tool) const noexcept {
-  const double force = tool.force.norm();
-  return force > 0.0 ? std::max(0.0, rows_.push_work(static_cast<int>(t)) / force - tool.compliance * force) : 0.0;
+  return depth_of(rows_.push_work(static_cast<int>(t)), scale_of_force(t, tool.force.norm()), tool.force, tool);
 }
 
 PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue, std::size_t t) noexcept {
@@ -163,50 +169,106 @@ PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue
   return all > 0.0 ? behind / all : 0.0;
 }
 
+/// The contacts themselves where there is one body only.
+PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const KnownErrors& body, bool only,
+                                                                        std::size_t t,
+                                                                        const ContactTool& tool) noexcept {
+  const int number = static_cast<int>(t);
+  if (only) return {rows_.contacts(), tool.force, scale_of_force(t, tool.force.norm()), indentation(t, tool)};
+  BodyContacts own;
+  std::size_t count = 0;
+  double sum = 0.0, work = 0.0;
+  for (int i = 0; i < rows_.count(); ++i) {
+    Contact c = rows_.contacts()[at(i)];
+    if (c.tool != number || c.vertices[0] < body.first || c.vertices[0] >= body.end) continue;
+    own.force += c.total();
+    sum += std::abs(c.force);
+    work += rows_.push_work_of_row(i);
+    for (int& v : c.vertices) v -= body.first;
+    on_body_[count++] = c;
+  }
+  own.rows = {on_body_.data(), count};
+  own.scale = force_scale(own.force.norm(), sum);
+  own.depth = depth_of(work, own.scale, own.force, tool);
+  return own;
+}
+
 /// The strain follows from the force on a fine mesh.
-PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
-                                                     const ContactTool& tool, ForceError& error) const noexcept {
-  const LinearModelError& model = surface.model_error();
-  SphereIndentation sphere{error.force - error.expected, indentation(t, tool), tool.radius};
+PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
+                                                     const BodyContacts& contacts, std::size_t t,
+                                                     SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
+  const LinearModelError& model = *body.model;
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
   double sum = 0.0;
-  for (const Contact& c : rows_.contacts()) {
+  for (const Contact& c : contacts.rows) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
     if (sum == 0.0) {
-      const ContactMaterial material = surface.material(surface.triangles_at(c.vertices[0]).front());
+      const ContactMaterial material = surface.material(surface.triangles_at(body.first + c.vertices[0]).front());
       sphere.modulus = material.modulus;
       sphere.poisson_ratio = material.poisson_ratio;
     }
     sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
     sum += std::abs(c.force) + c.friction.norm();
   }
-  error.parts.linearity = error.force * linearity_error(sphere, model.body_size);
-  error.parts.storage = model.storage * sum * sum / sphere.depth;
-  error.parts.conditioning = model.conditioning * sum * sum / sphere.depth;
+  parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
+  parts.storage += model.storage * sum * sum / sphere.depth;
+  parts.conditioning += model.conditioning * sum * sum / sphere.depth;
+}
+
+/// The bounds add up. The expected error counts as far as it is along the force of the tool.
+PALPATE_INLINE void ContactProblem::add_errors(const ContactSurface& surface, const KnownErrors& body,
+                                               const BodyContacts& contacts, std::size_t t, const ContactTool& tool,
+                                               ForceError& error) const noexcept {
+  ForceError own;
+  if (body.accuracy != nullptr) {
+    ContactTool pressing = tool;
+    if (const double force = contacts.force.norm(); force > 0.0)
+      pressing.force = contacts.scale > force ? contacts.scale / force * contacts.force : contacts.force;
+    own = body.accuracy->error(pressing, static_cast<int>(t), contacts.rows, contacts.depth);
+  }
+  error.expected += own.expected * contacts.force.dot(tool.force) / (contacts.scale * error.force);
+  error.parts.mesh += own.bound;
+  if (body.model != nullptr)
+    add_model_errors(surface, body, contacts, t, {contacts.scale - own.expected, contacts.depth, tool.radius},
+                     error.parts);
 }
 
 /// A sphere without force may have entered a facet between contact points.
-PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
-                                                      const ContactTool& tool) const noexcept {
-  const int number = static_cast<int>(t);
-  if (!tool.active || !candidates_.has_any(number)) return {0.0, 0.0, 0.0, {0.0}};
+PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& tissue,
+                                                              const ContactTool& tool) const noexcept {
+  const ForceError unknown{0.0, infinity, 0.0}, none{0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
-  const ForceAccuracy* accuracy = surface.force_accuracy();
+  bool any = false;
+  for (int b = 0; b < surface.body_count(); ++b) any = any || surface.known_errors(b).accuracy != nullptr;
+  if (!any || !tissue.has_contact_materials()) return unknown;
+  const auto closest = surface.closest(tool.proxy);
+  if (!(closest.distance < tool.radius)) return none;
+  const int vertex = surface.triangle(closest.triangle)[0];
+  for (int b = 0; b < surface.body_count(); ++b)
+    if (const KnownErrors body = surface.known_errors(b); vertex >= body.first && vertex < body.end)
+      return body.accuracy != nullptr ? body.accuracy->error_without_force(vertex - body.first) : unknown;
+  return unknown;
+}
+
+PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
+                                                      const ContactTool& tool) noexcept {
+  if (!tool.active || !candidates_.has_any(static_cast<int>(t))) return {0.0, 0.0, 0.0, {0.0}};
+  const ContactSurface& surface = tissue.contact_surface();
   const double force = tool.force.norm();
-  if (!tissue.has_contact_materials()) return {0.0, infinity, force};
-  if (!(force > 0.0)) {
-    if (accuracy == nullptr) return {0.0, infinity, 0.0};
-    const auto closest = surface.closest(tool.proxy);
-    return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0])
-                                          : ForceError{0.0, 0.0, 0.0, {0.0}};
+  if (!(force > 0.0)) return error_without_force(tissue, tool);
+  ForceError error{0.0, 0.0, force, {0.0}};
+  bool pressed = false;
+  for (int b = 0; b < surface.body_count(); ++b) {
+    KnownErrors body = surface.known_errors(b);
+    if (!tissue.has_contact_materials()) body = {body.first, body.end};
+    const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
+    if (!(contacts.scale > 0.0)) continue;
+    pressed = true;
+    add_errors(surface, body, contacts, t, tool, error);
   }
-  ForceError error = accuracy == nullptr ? ForceError{0.0, infinity, force}
-                                         : accuracy->error(tool, number, rows_.contacts(), indentation(t, tool));
-  error.force = force;
-  error.parts.mesh = error.bound;
-  add_model_errors(surface, t, tool, error);
+  if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
-  error.parts.merged = force * missing_depth() / (1.0 - missing_depth());
+  error.parts.merged = scale_of_force(t, force) * missing_depth() / (1.0 - missing_depth());
   error.bound = error.parts.sum();
   return error;
 }
@@ -319,8 +381,8 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
 /// Where normals at the solution differ so much from those of the linearisation that another one would follow: they are
 /// corrected at a fraction of its cost. Points that move on their facets need that other linearisation.
 PALPATE_INLINE void ContactProblem::correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept {
-  if (rows_.has_moving() || first_change_safety * proxies_.relative_change(tools) <= parameters_.force_tolerance)
-    return;
+  const double change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
+  if (rows_.has_moving() || first_change_safety * change <= parameters_.force_tolerance) return;
   for (int k = 0; k < most_corrections; ++k) {
     const double estimate = estimate_safety * rows_.remaining_change(tools);
     if (estimate <= parameters_.force_tolerance || !(estimate <= largest_correction)) return;

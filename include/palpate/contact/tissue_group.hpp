@@ -25,9 +25,10 @@ concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> for
 
 }  // namespace detail
 
-/// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel in the
-/// world frame: a sphere that touches two organs is one contact problem, with one force and one gate. Vertices are
-/// those of the members in sequence. Refers to the members, which must outlive it; the organs do not touch each other.
+/// Tissues of any types that do not move by themselves, and have no hook but prefetch, as one TissueModel: a sphere
+/// that touches two organs is one contact problem, with one force and one gate. Vertices are those of the members in
+/// sequence. The frame is that of the first member at construction; a group of one gives the forces, flags and errors
+/// of its member to the last bit. Refers to the members, which must outlive it; the organs do not touch each other.
 class TissueGroup : public StillTissue {
  public:
   /// Throws bad_argument when there are no members. Allocates.
@@ -53,6 +54,7 @@ class TissueGroup : public StillTissue {
   Status require_columns(std::span<const int> vertices) noexcept;
   void prefetch(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept;
+  Vector3 displacement_of(int i, std::span<const VertexForce> forces) const noexcept;
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
   double compliance_floor() const noexcept { return floor_; }
@@ -61,8 +63,11 @@ class TissueGroup : public StillTissue {
  private:
   struct Member {
     TissueView tissue;
-    int first, count;  // vertices in the group
+    int first, count;         // vertices in the group
+    Eigen::Isometry3d place;  // in the frame of the group
+    bool in_place;            // that is the identity: nothing is rounded
 
+    Vector3 placed(const Vector3& x) const noexcept;
     bool has(int vertex) const noexcept { return vertex >= first && vertex < first + count; }
   };
 
@@ -79,11 +84,13 @@ class TissueGroup : public StillTissue {
     return view;
   }
   void add(const TissueView& tissue);
+  void place(Member& m) const noexcept;
   void build();
   void add_shells();
   std::vector<ContactMaterial> materials() const;
-  /// Of all members, in the world frame; empty if it is not set for one of them.
+  /// Of all members, in the frame of the group; empty if it is not set for one of them.
   ContactSurface::Unloaded unloaded() const;
+  void join_errors();
   const Member& member_of(int vertex) const noexcept;
   std::span<const int> part_of(const Member& m, std::span<const int> vertices) noexcept;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -91,7 +98,8 @@ class TissueGroup : public StillTissue {
   std::vector<Member> members_;
   std::vector<Vector3> moved_;  // vertices of all members, then those of their shells
   std::vector<Triangle> triangles_;
-  std::vector<int> own_;  // workspace
+  std::vector<int> own_;             // workspace
+  std::vector<KnownErrors> errors_;  // of the members' bodies, in the numbers of the group
   ContactSurface surface_;
   double floor_ = infinity;
   std::uint64_t updates_ = 0;

@@ -15,16 +15,29 @@ static_assert(TissueModel<TissueGroup>);
 PALPATE_INLINE void TissueGroup::add(const TissueView& tissue) {
   const ContactSurface& surface = tissue.contact_surface();
   const int first = members_.empty() ? 0 : members_.back().first + members_.back().count;
-  members_.push_back({tissue, first, surface.vertex_count()});
-  for (const Vector3& x : surface.positions()) moved_.push_back(tissue.to_world() * x);
+  if (members_.empty()) world_ = tissue.to_world();
+  Member& m = members_.emplace_back(Member{tissue, first, surface.vertex_count(), {}, true});
+  place(m);
+  for (const Vector3& x : surface.positions()) moved_.push_back(m.placed(x));
   for (const Triangle& t : surface.triangles()) triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
   floor_ = std::min(floor_, tissue.compliance_floor());  // so that it is tiny compared with the stiffest member, too
 }
+
+PALPATE_INLINE void TissueGroup::place(Member& m) const noexcept {
+  const Eigen::Isometry3d& pose = m.tissue.to_world();
+  m.in_place = std::equal(pose.data(), pose.data() + 16, world_.data());
+  m.place = m.in_place ? Eigen::Isometry3d::Identity() : inverse(world_) * pose;
+}
+PALPATE_INLINE Vector3 TissueGroup::Member::placed(const Vector3& x) const noexcept {
+  return in_place ? x : Vector3(place * x);
+}
+
 PALPATE_INLINE void TissueGroup::build() {
   if (members_.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no members");
   surface_ = ContactSurface(moved_, std::move(triangles_));
   surface_.set_unloaded(unloaded());
   surface_.set_materials(materials());
+  join_errors();
   own_.resize(moved_.size());
   add_shells();
 }
@@ -40,7 +53,7 @@ PALPATE_INLINE void TissueGroup::add_shells() {
       for (int& v : t) v += v < m.count ? m.first : after;
       shell.push_back(t);
     }
-    for (const Vector3& x : own.shell_positions()) moved_.push_back(m.tissue.to_world() * x);
+    for (const Vector3& x : own.shell_positions()) moved_.push_back(m.placed(x));
   }
   surface_.add_shell(std::span(moved_).subspan(vertices), shell);
 }
@@ -50,7 +63,7 @@ PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
   for (const Member& m : members_) {
     const ContactSurface::Unloaded& own = m.tissue.contact_surface().unloaded();
     if (static_cast<int>(own.positions.size()) != m.count) return {};
-    for (const Vector3& x : own.positions) all.positions.push_back(m.tissue.to_world() * x);
+    for (const Vector3& x : own.positions) all.positions.push_back(m.placed(x));
     all.loads += (all.loads.empty() ? "" : "; ") + own.loads;
   }
   return all;
@@ -66,15 +79,33 @@ PALPATE_INLINE std::vector<ContactMaterial> TissueGroup::materials() const {
   return materials;
 }
 
+/// Nothing is known of a member whose compliance is not that of its surface. Allocates in the first call only.
+PALPATE_INLINE void TissueGroup::join_errors() {
+  errors_.clear();
+  for (const Member& m : members_) {
+    const ContactSurface& own = m.tissue.contact_surface();
+    for (int b = 0; b < own.body_count(); ++b) {
+      KnownErrors body = own.known_errors(b);
+      if (!m.tissue.has_contact_materials()) body = {body.first, body.end};
+      body.first += m.first;
+      body.end += m.first;
+      errors_.push_back(body);
+    }
+  }
+  surface_.set_known_errors(errors_);
+}
+
 PALPATE_INLINE void TissueGroup::update() noexcept {
+  if (members_.size() == 1) world_ = members_.front().tissue.to_world();
   auto shell = static_cast<std::size_t>(surface_.vertex_count());
   for (Member& m : members_) {
     m.tissue.look();
-    const Eigen::Isometry3d& pose = m.tissue.to_world();
-    for (int v = 0; v < m.count; ++v) moved_[at(m.first + v)] = pose * m.tissue.contact_surface().position(v);
-    for (const Vector3& x : m.tissue.contact_surface().shell_positions()) moved_[shell++] = pose * x;
+    place(m);
+    for (int v = 0; v < m.count; ++v) moved_[at(m.first + v)] = m.placed(m.tissue.contact_surface().position(v));
+    for (const Vector3& x : m.tissue.contact_surface().shell_positions()) moved_[shell++] = m.placed(x);
   }
   surface_.move_to(moved_);
+  join_errors();
   ++updates_;
 }
 
@@ -83,8 +114,9 @@ PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const Ve
   const Member& m = members_[at(member)];
   std::size_t count = 0;
   for (const VertexForce& f : forces)
-    if (m.has(f.vertex) && count < own.size())  // the group's axes are the world's
-      own[count++] = {f.vertex - m.first, ModelVector::from_world(f.force.in_model_axes(), m.tissue.to_world())};
+    if (m.has(f.vertex) && count < own.size())
+      own[count++] = {f.vertex - m.first,
+                      m.in_place ? f.force : ModelVector::from_world(f.force.in_model_axes(), m.place)};
   return count;
 }
 
@@ -103,8 +135,22 @@ PALPATE_INLINE void TissueGroup::prefetch(std::span<const int> vertices) noexcep
 PALPATE_INLINE Matrix3 TissueGroup::compliance(int i, int j) const noexcept {
   const Member& m = member_of(j);
   if (!m.has(i)) return Matrix3::Zero();
-  const Matrix3 turn = rotation_of(m.tissue.to_world());
+  if (m.in_place) return m.tissue.compliance(i - m.first, j - m.first);
+  const Matrix3 turn = rotation_of(m.place);
   return turn * m.tissue.compliance(i - m.first, j - m.first) * turn.transpose();
+}
+/// As the member sums it where the forces are in its own numbers and frame.
+PALPATE_INLINE Vector3 TissueGroup::displacement_of(int i, std::span<const VertexForce> forces) const noexcept {
+  const Member& m = member_of(i);
+  const auto is_own = [&m](const VertexForce& f) { return m.has(f.vertex); };
+  Vector3 u = Vector3::Zero();
+  if (m.in_place && m.first == 0 && std::all_of(forces.begin(), forces.end(), is_own)) {
+    m.tissue.displacement(i, forces, u);
+    return u;
+  }
+  for (const VertexForce& f : forces)
+    if (is_own(f)) u.noalias() += compliance(i, f.vertex) * f.force.in_model_axes();
+  return u;
 }
 PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {
   const Member& m = member_of(j);

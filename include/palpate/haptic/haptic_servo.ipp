@@ -298,7 +298,8 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   lost_contact_[i] = !blades_[i] && has_lost_contact(i);
   if (lost_contact_[i]) forces_[i].status.set(StatusFlag::lost_contact);
   const ForceError& error = errors_[i];
-  const auto is_large = [&](double part) { return part > detail::flagged_error * error.force && part < infinity; };
+  const double large = detail::flagged_error * problem_.scale_of_force(i, error.force);
+  const auto is_large = [&](double part) { return part > large && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);
   if (is_large(error.parts.linearity)) forces_[i].status.set(StatusFlag::large_displacement);
   forces_[i].error = error;

@@ -6,7 +6,15 @@
 #include <palpate/contact/detail/complementarity.hpp>
 #include <palpate/contact/detail/point_compliance.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// What changes, depths and errors of a contact force are relative to: its length, or half of the sum of the normal
+/// forces where that is more. In a hole or a fold the normal forces cancel, and what is left of them is no scale.
+inline double force_scale(double force, double sum) noexcept {
+  return std::max(force, 0.5 * sum);
+}
 
 /// Up to `capacity` candidates that press or might press, as rows of W lambda + b: adds and drops them, builds W from
 /// the tissue's compliance, solves, and returns forces and displaced points. Nothing allocates after construction.
@@ -66,6 +74,12 @@ class ContactRows {
   /// Sum of force times penetration without contact force, over the rows of a tool: twice the energy of its contact, if
   /// no other tool presses [J].
   double push_work(int tool) const noexcept;
+  /// The part of one row [J].
+  double push_work_of_row(int i) const noexcept { return -(problem_.lambda[at(i)] * problem_.b[at(i)]); }
+  /// Sum of the normal forces on a tool in the last solution applied [N].
+  double pressing_force(std::size_t tool) const noexcept { return pressing_force_[tool]; }
+  /// Largest force_scale of all tools [N].
+  double largest_force_scale(std::span<const ContactTool> tools) const noexcept;
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
 
@@ -130,6 +144,7 @@ class ContactRows {
   std::vector<Vector3> redirected_path_;  // by correct_normals: displacement of a row's point by the redirected parts
   std::vector<Vector3> shift_;            // displacement of a row's point by the forces redirected since `build`
   std::array<Vector3, maximum_tools> redirected_of_tool_{};
+  std::array<double, maximum_tools> pressing_force_{};
   double remaining_change_ = -1.0;  // negative: not known
   bool has_moving_ = false;
   std::vector<int> vertices_;

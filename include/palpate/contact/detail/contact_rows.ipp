@@ -92,6 +92,7 @@ PALPATE_INLINE void ContactRows::clear() noexcept {
 PALPATE_INLINE void ContactRows::reset() noexcept {
   clear();
   compliance_.reset();
+  pressing_force_.fill(0.0);
   tick_ = 0;
 }
 
@@ -197,8 +198,15 @@ PALPATE_INLINE bool ContactRows::solve(int first) noexcept {
 PALPATE_INLINE double ContactRows::push_work(int tool) const noexcept {
   double work = 0.0;
   for (int i = 0; i < count_; ++i)
-    if (rows_[at(i)].tool == tool) work -= problem_.lambda[at(i)] * problem_.b[at(i)];
+    if (rows_[at(i)].tool == tool) work += push_work_of_row(i);
   return work;
+}
+
+PALPATE_INLINE double ContactRows::largest_force_scale(std::span<const ContactTool> tools) const noexcept {
+  double largest = 0.0;
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    largest = std::max(largest, force_scale(tools[t].force.norm(), pressing_force_[t]));
+  return largest;
 }
 
 PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
@@ -224,6 +232,7 @@ inline Vector3 ContactRows::moved_point(int i, int pressing) const noexcept {
 
 PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept {
   displacement.clear();
+  pressing_force_.fill(0.0);
   for (ContactTool& tool : tools) {
     tool.force.setZero();
     tool.torque.setZero();
@@ -242,6 +251,7 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     if (friction_.acts()) row.point -= friction_.displacement(i) - coupling_displacement(tools[at(row.tool)], row);
     longest = std::max(longest, (row.point - c.point).squaredNorm());
     if (row.force == 0.0) continue;
+    pressing_force_[at(row.tool)] += std::abs(row.force);
     ContactTool& tool = tools[at(row.tool)];
     const Vector3 total = friction_.acts() ? row.total() : Vector3(row.force * row.normal);
     tool.force += total;

@@ -29,12 +29,10 @@ PALPATE_INLINE double ContactRows::estimate_change(std::span<const ContactTool> 
     redirected_of_tool_[at(row.tool)] += redirected_[at(i)];
     gap = std::max(gap, std::abs(distance - tool.radius));
   }
-  double largest_change = 0.0, largest_force = 0.0;
-  for (std::size_t t = 0; t < tools.size(); ++t) {
+  double largest_change = 0.0;
+  for (std::size_t t = 0; t < tools.size(); ++t)
     largest_change = std::max(largest_change, redirected_of_tool_[t].norm());
-    largest_force = std::max(largest_force, tools[t].force.norm());
-  }
-  const double push = deepest_push();
+  const double largest_force = largest_force_scale(tools), push = deepest_push();
   return largest_force > 0.0 && push > 0.0 ? largest_change / largest_force + gap / push : infinity;
 }
 

@@ -87,7 +87,8 @@ PALPATE_INLINE Status LocalContact::status(std::size_t t, const ContactTool& too
   const auto& [compliance, rest, load, known] = next_[t];
   const double force = tool.force.norm();
   if (!known || !(force > 0.0) || !LocalIndentation::is_coarse(tool.radius, load.facets.length)) return {};
-  if (load.known < 1.0) return StatusFlag::coarse_contact;
+  const bool cancels = force < force_scale(force, load.force);  // the law is for a force on one side
+  if (load.known < 1.0 || cancels) return StatusFlag::coarse_contact;
   const LocalIndentation law(tool.radius, load.facets);
   const double indentation = (rest + compliance) * force, local = law.depth(force);
   const double left_out = law.missing(force) - local;

@@ -40,8 +40,8 @@ class ProxyMotion {
   void note_alternation(Tools tools) noexcept;
   /// Whether all proxies got to the positions of the solution in the last step.
   bool arrived() const noexcept { return arrived_; }
-  /// Relative change of the tools' forces and torques since `begin`.
-  double relative_change(Tools tools) const noexcept;
+  /// Change of the tools' forces and torques since `begin`, relative to a force `scale` [N].
+  double relative_change(Tools tools, double scale) const noexcept;
   /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
   /// not converged although the devices hardly move, steps become shorter, until a device moves.
   void end_tick(Tools tools, bool converged) noexcept;

@@ -100,11 +100,10 @@ PALPATE_INLINE void ProxyMotion::note_alternation(Tools tools) noexcept {
   changed_ = arrived_;
 }
 
-PALPATE_INLINE double ProxyMotion::relative_change(Tools tools) const noexcept {
-  double change = 0.0, scale = 0.0;
+PALPATE_INLINE double ProxyMotion::relative_change(Tools tools, double scale) const noexcept {
+  double change = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     change = std::max(change, (tools[t].force - start_force_[t]).norm());
-    scale = std::max(scale, tools[t].force.norm());
     if (!(tools[t].half_length > 0.0)) continue;
     const double arm = std::max(tools[t].half_length, tools[t].radius);
     change = std::max(change, (tools[t].torque - start_torque_[t]).norm() / arm);
