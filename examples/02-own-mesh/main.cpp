@@ -1,7 +1,7 @@
 // Example 02: your own mesh.
 //
-//   example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] [--largest-piece]
-//                       [--out DIR]
+//   example_02_own_mesh [FILE] [--scale METRES] [--labels ARRAY] [--fix GROUP] [--touch GROUP] [--radius METRES]
+//                       [--largest-piece] [--out DIR]
 //
 // Reads a mesh file, reports its defects and what to do about them, and touches the body with a scripted sphere.
 // Without a file it uses the organ shipped with palpate. docs/from_images.md describes how to make such a file from a
@@ -58,6 +58,8 @@ std::optional<Arguments> read_arguments(int count, char** values) {
       a.touch = values[i];
     else if (name == "--out")
       a.out = values[i];
+    else if (name == "--labels")
+      a.labels = values[i];
     else if (!(name == "--scale" && positive(a.scale)) && !(name == "--radius" && positive(a.radius)))
       return {};
   }
@@ -96,9 +98,9 @@ const char* advice(SetupErrorKind kind) {
 
 Mesh<Tet4> read(const Arguments& arguments) {
 #if OWN_MESH_XML  // pugixml and zlib are installed: also VTU and FEBio
-  return io::xml::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+  return io::xml::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale, .labels = arguments.labels});
 #else
-  return io::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale});
+  return io::read_mesh<Tet4>(arguments.file, {.scale = arguments.scale, .labels = arguments.labels});
 #endif
 }
 
@@ -186,8 +188,8 @@ int run(const Arguments& arguments) {
 int main(int count, char** values) {
   const auto arguments = read_arguments(count, values);
   if (!arguments) {
-    std::cerr << "usage: example_02_own_mesh [FILE] [--scale METRES] [--fix GROUP] [--touch GROUP] [--radius METRES] "
-                 "[--largest-piece] [--out DIR]\n";
+    std::cerr << "usage: example_02_own_mesh [FILE] [--scale METRES] [--labels ARRAY] [--fix GROUP] [--touch GROUP] "
+                 "[--radius METRES] [--largest-piece] [--out DIR]\n";
     return 2;
   }
   try {

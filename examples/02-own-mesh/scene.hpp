@@ -15,6 +15,7 @@ using namespace palpate;
 struct Arguments {
   std::string file = PALPATE_EXAMPLE_DATA "/organ.msh";
   std::string fix, touch;  ///< names of groups; empty: see choose
+  std::string labels;      ///< of ReadOptions
   std::string out = "build/own_mesh";
   double scale = 1.0;   ///< unit of the file [m]
   double radius = 0.0;  ///< of the sphere [m]; 0: see plan_press

@@ -53,6 +53,11 @@ TEST_CASE("Medit: references are regions in ascending order, 0 is none", "[io]")
   const auto mesh = read_medit(text);
   CHECK(mesh.region_names == std::vector<std::string>{"body", "volume 2", "volume 7"});
   CHECK(mesh.regions == std::vector<int>{2, 0, 1});
+
+  io::MeshNumbering ids;  // a section per block of cells, as meshio writes them
+  const auto blocks = head + corners + "Tetrahedra\n2\n1 2 3 4 7\n2 1 3 4 0\nTetrahedra\n1\n2 1 3 4 2\nEnd\n";
+  CHECK(io::parse_mesh<Tet4>(blocks, "mesh", {.numbering = &ids}).regions == mesh.regions);
+  CHECK(ids.element_tags == std::vector<Index>{1, 2, 3});
 }
 
 TEST_CASE("Medit: sections of other programs are skipped, in any order, on any lines", "[io]") {
@@ -110,7 +115,7 @@ TEST_CASE("Medit: hexahedra, and prisms are refused by name", "[io]") {
              test::contains("mesh:17: expected a 4-node tetrahedron, found a 6-node prism"));
 }
 
-TEST_CASE("Medit, binary: floats where the file says so, sections that are not read, a chain that ends", "[io]") {
+TEST_CASE("Medit, binary: floats where the file has them, sections that are not read, a chain that ends", "[io]") {
   using test::i32;
   const auto file = [](const std::string& before) {
     BinaryWriter writer;
@@ -167,5 +172,6 @@ TEST_CASE(
                    test::contains("meshio convert a.mesh converted.vtk"));
   CHECK_THAT(refusal("    -1\n  2411\n", "a.unv"), test::contains("gmsh a.unv -save -format msh41 -o converted.msh"));
   CHECK_THAT(refusal("ISO-10303-21;\n", "a.STEP"), test::contains("gmsh a.STEP -3"));
+  CHECK_THAT(refusal("*KEYWORD\n*NODE\n1,0,0,0\n", "a.k"), test::contains("Export it for Abaqus or Nastran"));
   CHECK_THAT(refusal("(0 \"GAMBIT to Fluent File\")\n", "a.msh"), test::contains("meshio convert a.msh converted.vtk"));
 }

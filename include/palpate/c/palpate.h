@@ -128,7 +128,7 @@ PALPATE_C_API const char* palpate_policy_name(size_t number);
 /* Nodes, cells and groups. Needed until the tissue has been created. */
 typedef struct palpate_mesh palpate_mesh;
 
-/* Reads a file: Gmsh, TetGen, legacy VTK, VegaFEM (docs/input.md). `scale` is the unit of the file in metres; 0: 1. */
+/* Reads a file: Gmsh, TetGen, Medit, legacy VTK, Abaqus, VegaFEM (docs/input.md). `scale` is the unit of the file in metres; 0: 1. */
 PALPATE_C_API palpate_error palpate_mesh_read(const char* path, double scale, palpate_mesh** mesh);
 /* From arrays, which are copied: x y z per node [m]; nodes_per_cell (4, 8, 10 or 20) node ids per cell in the order of
  * docs/your-mesh.md; a region per cell, or null. */

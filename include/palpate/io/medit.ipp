@@ -21,7 +21,7 @@ class Parser {
  private:
   void read(const Section& section);
   void read_vertices();
-  void read_cells(CellShape shape);
+  void read_cells(const Section& section);
   void check_order(CellShape shape);
   void number_nodes();
   void add_points();
@@ -34,6 +34,7 @@ class Parser {
   FileMesh mesh_;
   bool has_dimension_ = false, has_vertices_ = false, is_bezier_ = false;
   std::vector<int> references_;  ///< of the vertices
+  std::array<Index, sections.size()> last_cell_{};
   TagSets sets_;
 };
 
@@ -56,7 +57,7 @@ inline void Parser::read(const Section& section) {
   } else if (section.kind == Section::vertices) {
     read_vertices();
   } else if (section.kind == Section::cells) {
-    read_cells(section.shape);
+    read_cells(section);
   } else if (section.kind == Section::order) {
     check_order(section.shape);
   } else if (section.kind == Section::bezier) {
@@ -82,14 +83,16 @@ inline void Parser::read_vertices() {
 }
 
 /// Nodes keep their ids of the file until all sections are read.
-inline void Parser::read_cells(CellShape shape) {
+inline void Parser::read_cells(const Section& section) {
+  const CellShape shape = section.shape;
+  Index& last = last_cell_[static_cast<std::size_t>(&section - sections.data())];
   const Index n = source_.count("a number of elements", 0, facts(shape).nodes + 1);
   for (Index i = 0; i < n; ++i) {
     source_.begin("an element");
     const Index place = in().place();
     for (int a = 0; a < facts(shape).nodes; ++a)
       mesh_.cell_nodes.push_back(static_cast<NodeId>(source_.integer("a node id", 1, max_int)));
-    mesh_.add_cell(i + 1, place, shape, tag_set(reference()), {});
+    mesh_.add_cell(++last, place, shape, tag_set(reference()), {});
   }
 }
 

@@ -56,6 +56,9 @@ PALPATE_COLD inline std::string conversion_hint(const std::string& name) {
   constexpr std::array<std::string_view, 6> geometries{".step", ".stp", ".iges", ".igs", ".brep", ".geo"};
   for (const std::string_view ending : geometries)
     if (has_ending(name, ending)) return joined({"Mesh it: gmsh ", name, " -3 -format msh41 -o solid.msh"});
+  constexpr std::array<std::string_view, 3> decks{".k", ".key", ".cdb"};
+  for (const std::string_view ending : decks)
+    if (has_ending(name, ending)) return "Export it for Abaqus or Nastran from the program that wrote it";
   return joined({"meshio and gmsh convert others: ", meshio_command(name)});
 }
 
@@ -91,6 +94,7 @@ PALPATE_COLD PALPATE_INLINE MeshFormat format_of(std::string_view text, const st
   while (in.line().starts_with('#') && in.next_line()) {}
   if (in.line().starts_with("MeshVersionFormatted")) return MeshFormat::medit;
   if (in.line().starts_with('*') && detail::has_ending(name, ".inp")) return MeshFormat::abaqus;
+  if (in.line().starts_with("*KEYWORD")) return MeshFormat::unknown;  // LS-DYNA
   if (in.line().starts_with("*VERTICES") || in.line().starts_with("*INCLUDE")) return MeshFormat::veg;
   if (in.line().starts_with('*')) return MeshFormat::abaqus;
   return detail::format_of_ending(name);

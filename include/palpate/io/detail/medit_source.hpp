@@ -19,7 +19,8 @@ class Source {
 
   TextReader in;
 
-  /// Moves to the next section that is read, nullptr at the end. Refuses one that is repeated.
+  /// Moves to the next section that is read, nullptr at the end. Refuses one that is repeated, except sections of
+  /// cells.
   const Section* next_section();
 
   /// Refuses data of a section that do not end where the next one begins.

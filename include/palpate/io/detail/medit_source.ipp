@@ -33,7 +33,7 @@ PALPATE_INLINE const Section* Source::next_section() {
   const Section* section = is_binary_ ? next_binary_section() : next_text_section();
   if (section == nullptr) return nullptr;
   bool& is_known = is_known_[static_cast<std::size_t>(section - sections.data())];
-  if (std::exchange(is_known, true))
+  if (std::exchange(is_known, true) && section->kind != Section::cells)  // meshio writes one for every block of cells
     in.refuse(SetupErrorKind::bad_file, "every section once", {in_quotes(section->keyword), " again"});
   has_end_ = section->kind == Section::end;
   return has_end_ ? nullptr : section;
@@ -49,9 +49,10 @@ PALPATE_INLINE const Section* Source::next_text_section() {
     if (const Section* section = find_section(word)) return section;
     const char first = word.front();
     const bool is_keyword = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
-    if (!is_keyword && !skips) in.refuse(SetupErrorKind::bad_file, "a keyword such as Tetrahedra", in_quotes(word),
-                                      "A count is too small, or elements of second order have the keyword of the first, as "
-                                      "Gmsh writes them: save its meshes as MSH");
+    if (!is_keyword && !skips)
+      in.refuse(SetupErrorKind::bad_file, "a keyword such as Tetrahedra", in_quotes(word),
+                "A count is too small, or elements of second order have the keyword of the first, as "
+                "Gmsh writes them: save its meshes as MSH");
     skips = true;
   }
 }

@@ -8,9 +8,9 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 
 /// Cell arrays that are used as region numbers, in this order of preference: Gmsh writes CellEntityIds, meshio all with
 /// a colon.
-inline constexpr std::array<std::string_view, 10> region_arrays{
-    "region",   "CellEntityIds", "gmsh:physical", "material",    "MaterialIds",
-    "Material", "medit:ref",     "tetgen:ref",    "nastran:ref", "avsucd:material"};
+inline constexpr std::array<std::string_view, 11> region_arrays{
+    "region",    "CellEntityIds", "gmsh:physical", "material",        "MaterialIds", "Material",
+    "medit:ref", "tetgen:ref",    "nastran:ref",   "avsucd:material", "netgen:index"};
 
 /// The names that are looked for: `labels`, if it is not empty, instead of region_arrays.
 std::span<const std::string_view> region_names(const std::string_view& labels) noexcept;
