@@ -162,19 +162,23 @@ PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue
   return all > 0.0 ? behind / all : 0.0;
 }
 
-/// The strain follows from the force on a fine mesh.
+/// The strain follows from the force on a fine mesh. Where columns or contacts are missing the force is too small: all
+/// of the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
                                                      const ContactTool& tool, ForceError& error) const noexcept {
   const LinearModelError& model = surface.model_error();
   SphereIndentation sphere{error.force - error.expected, indentation(t, tool), tool.radius};
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
+  if (late_ || missing_depth() > 0.0) sphere.force = infinity;
   double sum = 0.0;
   for (const Contact& c : rows_.contacts()) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
     if (sum == 0.0) {
       const ContactMaterial material = surface.material(surface.triangles_at(c.vertices[0]).front());
-      sphere.modulus = material.modulus;
-      sphere.poisson_ratio = material.poisson_ratio;
+      if (material.modulus > 0.0) {
+        sphere.modulus = material.modulus;
+        sphere.poisson_ratio = material.poisson_ratio;
+      }
     }
     sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
     sum += std::abs(c.force) + c.friction.norm();

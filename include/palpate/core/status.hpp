@@ -30,12 +30,14 @@ enum class StatusFlag : std::uint32_t {
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
                               ///< or the estimated error of the force is above a tenth of it
   large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
-  lost_contact = 1u << 18,  ///< the tool is inside the tissue: it passed through the surface, or entered where the
-                            ///< body cannot be touched; its force is zero, or points the wrong way
+  lost_contact = 1u << 18,    ///< the tool is inside the tissue: it passed through the surface, or entered where the
+                              ///< body cannot be touched; its force is zero, or points the wrong way
+  stalled_tissue = 1u << 19,  ///< the tissue has work that nobody does: steps or cuts without a BackgroundWorker or
+                              ///< calls of advance() or process_cuts(), or a worker that has failed
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 19;
+inline constexpr int status_flag_count = 20;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -64,7 +66,7 @@ constexpr std::string_view status_flag_name(int bit) {
       "NonFiniteInput",     "Saturated",      "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
       "SolverNotConverged", "EnergyInjected", "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
       "NonFiniteForce",     "StepRefused",    "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement",
-      "LostContact"};
+      "LostContact",        "StalledTissue"};
   return names[static_cast<std::size_t>(bit)];
 }
 

@@ -95,6 +95,8 @@ std::string flag_name(SetupFlag flag) {
       return "coarse_contact";
     case SetupFlag::accuracy_not_reached:
       return "accuracy_not_reached";
+    case SetupFlag::fixed_contact:
+      return "fixed_contact";
   }
   return "unknown";
 }
