@@ -24,11 +24,12 @@ struct Counting : test::AnalyticTissue {
   bool try_cut(const BladeSweep&) noexcept { return ++cuts < 2; }
   BackgroundStep background_work() noexcept { return {true, 0.5}; }
   void report_slow(bool is) noexcept { slow = is; }
+  void report_failed(bool is) noexcept { failed = is; }
 
   std::size_t prefetched = 0, pressing = 0;
   int begun = 0, exchanged = 0, cuts = 0;
   double smallest = 0.0;
-  bool slow = false;
+  bool slow = false, failed = false;
 };
 
 /// Changes nothing.
@@ -110,6 +111,7 @@ TEST_CASE("an adaptor forwards every hook, also through another adaptor", "[cont
   CHECK_FALSE(view.try_cut({}));
   CHECK(outer.background_work().next == 0.5);
   outer.report_slow(true);
+  outer.report_failed(true);
   CHECK(springs.slow);
 }
 

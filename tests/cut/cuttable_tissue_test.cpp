@@ -1,3 +1,4 @@
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/background_worker.hpp>
@@ -8,8 +9,12 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <new>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "catch.hpp"
 #include "refused.hpp"
@@ -369,6 +374,177 @@ TEST_CASE("remnants that sag too far are flagged, and stay in place when they ar
   }
   CHECK(flagged > 0);
   CHECK(detached_nodes > 0);
+}
+
+TEST_CASE("the set-up of tissue that is cut reports memory, accuracy, stages and progress, and can be cancelled",
+          "[cut][report]") {
+  std::vector<std::string> stages;
+  SetupOptions options;
+  options.progress = [&](const Progress& p) {
+    if (stages.empty() || stages.back() != p.stage) stages.emplace_back(p.stage);
+    return true;
+  };
+  Tissue tissue(slab(), constrained_below(), soft, options);
+  const SetupReport& report = tissue.report();
+  const HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>> uncut(slab(), constrained_below(), soft);
+  CHECK(report.stiffness_bytes == uncut.report().stiffness_bytes);
+  CHECK(report.solver_bytes >= static_cast<std::size_t>(8 * report.kept_dofs * report.kept_dofs));
+  CHECK(report.compliance_bytes >= 3 * static_cast<std::size_t>(8 * report.kept_dofs * report.kept_dofs));
+  CHECK(report.probe_error > 0.0);
+  CHECK(report.probe_error < 1e-10);
+  CHECK(report.condition_estimate > 0.1 * uncut.report().condition_estimate);
+  CHECK(report.condition_estimate < 10.0 * uncut.report().condition_estimate);
+  for (const char* stage : {"admission", "assembly", "factorisation", "compliance", "checks"}) {
+    INFO(stage);
+    CHECK(std::find(stages.begin(), stages.end(), stage) != stages.end());
+    CHECK(std::any_of(report.seconds.begin(), report.seconds.end(), [&](const auto& s) { return s.first == stage; }));
+    SetupOptions cancelling;
+    cancelling.progress = [&](const Progress& p) { return p.stage != stage; };
+    CHECK_REFUSED(SetupErrorKind::cancelled, Tissue(slab(), constrained_below(), soft, cancelling));
+  }
+  stages.clear();
+  tissue.set_gravity({0.0, 0.0, -5.0});  // makes a new factor
+  CHECK(stages.empty());                 // of the set-up only
+}
+
+TEST_CASE("a deep press of linear tissue that can be cut is flagged where that of other linear tissue is",
+          "[cut][extreme]") {
+  const Scene scene = Scene().fix("z0").touch("z1");
+  Tissue tissue(slab(), scene, soft);
+  HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>> uncut(slab(), scene, soft);
+  ServoOptions stiff;  // equal depths
+  stiff.coupling_stiffness = infinity;
+  HapticServo servo(tissue, SphereTool{.radius = 0.012}, stiff), other(uncut, SphereTool{.radius = 0.012}, stiff);
+  int flagged = 0, not_flagged = 0;
+  for (int k = 0; k < 500; ++k) {
+    const ToolState state = at({0.052, 0.047, 0.062 - 3e-5 * k}, 1e-3 * k);
+    const bool large = servo.tick(state).status.has(StatusFlag::large_displacement);
+    if (other.tick(state).status.has(StatusFlag::large_displacement)) REQUIRE(large);
+    ++(large ? flagged : not_flagged);
+  }
+  CHECK(flagged > 50);
+  CHECK(not_flagged > 50);
+}
+
+TEST_CASE("tissue that is cut is refused to a second servo", "[cut][refused]") {
+  Tissue tissue(slab(), constrained_below(), soft);
+  {
+    HapticServo servo(tissue, SphereTool{.radius = 0.01});
+    TissueAdaptor<Tissue> same(tissue);
+    CHECK_REFUSED(SetupErrorKind::unsupported, HapticServo(tissue, SphereTool{.radius = 0.01}));
+    CHECK_REFUSED(SetupErrorKind::unsupported, HapticServo(same, SphereTool{.radius = 0.01}));
+    CHECK(servo.tick(at({0.05, 0.05, 0.07}, 0.0)).force().isZero(0.0));
+  }
+  CHECK_NOTHROW(HapticServo(tissue, SphereTool{.radius = 0.01}));
+}
+
+TEST_CASE("a cut that nobody applies is flagged as such", "[cut][extreme]") {
+  Tissue tissue(slab(), constrained_below(), soft);
+  CHECK(tissue.begin_tick().ok());
+  tissue.cut(slit_at(0.052, 0.02));
+  for (int k = 1; k <= 600; ++k) {
+    INFO(k);
+    const Status status = tissue.begin_tick();
+    REQUIRE(status.has(StatusFlag::degraded_model));
+    REQUIRE(status.has(StatusFlag::stalled_tissue) == (k > 500));
+  }
+  tissue.process_cuts();
+  CHECK(tissue.begin_tick().ok());
+  for (int k = 0; k < 1000; ++k) REQUIRE(tissue.begin_tick().ok());  // nothing waits
+}
+
+TEST_CASE("a cut for which memory is short leaves the body as before it, or is completed later",
+          "[cut][extreme][E10]") {
+  if (!testing::allocations_are_counted()) {
+    WARN("allocations are not counted in this build");
+    return;
+  }
+  const auto order = [](int k) { return slit_at(0.04 + 0.02 * k, 0.02); };
+  Tissue tissue(slab(), constrained_below(), soft), reference(slab(), constrained_below(), soft);
+  const std::vector<int> pressed = used_vertices(tissue, 3);
+  const auto displacement = [&](Tissue& of) {
+    std::vector<VertexForce> forces;
+    for (const int v : pressed) forces.push_back({v, ModelVector(Vector3(0.01, 0.0, -0.05))});
+    return of.displacement(forces);
+  };
+  const auto same = [](const VectorX& a, const VectorX& b) {
+    return a.size() == b.size() && (a - b).norm() <= 1e-9 * b.norm();
+  };
+  std::vector<VectorX> expected{displacement(reference)};  // after 0, 1, 2 cuts
+  std::vector<int> vertices{reference.contact_surface().vertex_count()};
+  for (int k = 0; k < 2; ++k) {
+    reference.cut(order(k));
+    reference.process_cuts();
+    expected.push_back(displacement(reference));
+    reference.begin_tick();
+    vertices.push_back(reference.contact_surface().vertex_count());
+  }
+  int dropped = 0, completed = 0;
+  for (std::uint64_t n = 0, cuts = 0;; n += 1 + n / 60) {
+    INFO("allocation " << n << " fails");
+    REQUIRE(n < 1'000'000);
+    tissue.cut(order(static_cast<int>(cuts)));
+    bool failed = false;
+    const std::uint64_t refused = testing::detail::heap_calls_now().failed;
+    {
+      const testing::FailingHeap failing(n);
+      try {
+        tissue.process_cuts();
+      } catch (const std::bad_alloc&) {
+        failed = true;
+      }
+    }
+    if (tissue.cut_report().failed) CHECK(failed);  // not if the order still waits
+    CHECK(tissue.begin_tick().has(StatusFlag::degraded_model) == failed);
+    tissue.process_cuts();  // what is left to do
+    const VectorX now = displacement(tissue);
+    if (failed && same(now, expected[cuts])) {
+      ++dropped;
+      continue;
+    }
+    completed += failed;
+    REQUIRE(same(now, expected[++cuts]));
+    CHECK_FALSE(tissue.cut_report().failed);
+    tissue.begin_tick();
+    CHECK(tissue.contact_surface().vertex_count() == vertices[cuts]);
+    if (cuts < 2) continue;
+    if (testing::detail::heap_calls_now().failed == refused) break;
+    tissue.reset();
+    cuts = 0;
+  }
+  CHECK(dropped > 10);
+  CHECK(completed > 2);
+}
+
+TEST_CASE("a worker without memory for a cut stops, and ticks go on with the body before the cut", "[cut][extreme]") {
+  struct Starved : TissueAdaptor<Tissue> {
+    using TissueAdaptor::TissueAdaptor;
+    BackgroundStep background_work() {
+      const testing::FailingHeap failing(0, true);
+      return tissue().background_work();
+    }
+  };
+  if (!testing::allocations_are_counted()) return;
+  Tissue tissue(slab(), constrained_below(), soft);
+  Starved starved(tissue);
+  HapticServo servo(starved, SphereTool{.radius = 0.01});
+  const Vector3 pressing(0.05, 0.05, 0.0595);
+  const Vector3 before = servo.tick(at(pressing, 0.0)).force();
+  BackgroundWorker worker(starved);
+  tissue.cut(slit_at(0.052, 0.02));
+  for (int k = 0; k < 10000 && !worker.failed(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  REQUIRE(worker.failed());
+  worker.stop();
+  CHECK_THROWS_AS(worker.rethrow_failure(), std::bad_alloc);
+  for (int k = 1; k < 10; ++k) {
+    const GatedForce& force = servo.tick(at(pressing, 1e-3 * k));
+    CHECK(force.status.has(StatusFlag::stalled_tissue));
+    CHECK(force.force().norm() >= before.norm());
+  }
+  BackgroundWorker fed(tissue);  // the order still waits
+  for (int k = 0; k < 10000 && tissue.cut_report().cuts == 0; ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK(tissue.cut_report().cuts == 1);
 }
 
 TEST_CASE("one thread cuts while another ticks", "[cut][extreme][F3]") {

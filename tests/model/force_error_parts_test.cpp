@@ -186,6 +186,33 @@ TEST_CASE("a force with fewer rows than contacts differs by less than the part f
   CHECK(most > 0.01);
 }
 
+TEST_CASE("a press beyond small strain is flagged also where columns or rows are missing",
+          "[force_error][parts][extreme]") {
+  const PartsBody body{.cells = 12};
+  const auto presses = [&](auto&& model, int capacity) {
+    return press_to(model, body, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, capacity);
+  };
+  SetupOptions few;
+  few.compliance_slots = 6;
+  few.columns = ColumnFill::synchronous;
+  using All = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+  using Few = HapticFEModel<Smoothed<Tet4>, LinearElastic, SparseCholesky>;
+  const auto exact = presses(All(body.mesh(), body.scene(), body.material()), 300);
+  const auto columns = presses(Few(body.mesh(), body.scene(), body.material(), few), 300);
+  const auto rows = presses(All(body.mesh(), body.scene(), body.material()), 4);
+  int large = 0, degraded = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    INFO("press " << i);
+    large += exact[i].status.has(StatusFlag::large_displacement);
+    for (const auto* press : {&columns[i], &rows[i]}) {
+      degraded += press->status.has(StatusFlag::degraded_model);
+      if (exact[i].status.has(StatusFlag::large_displacement)) CHECK(press->status.has(StatusFlag::large_displacement));
+    }
+  }
+  CHECK(large > 2);
+  CHECK(degraded > 6);
+}
+
 TEST_CASE("the bound is infinite while a column is missing, then the force is that of a model with all columns",
           "[force_error][parts]") {
   const PartsBody body{.cells = 12, .at = 0.25};  // measured in the middle

@@ -6,6 +6,7 @@
 
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
+#include "refused.hpp"
 
 using namespace test;
 
@@ -145,6 +146,56 @@ TEST_CASE("flags", "[model][report]") {
     Mesh<Tet4> mesh = brick();
     for (Vector3& x : mesh.positions) x *= 1000.0;
     CHECK(model_of(mesh, brick_scene())->report().has(SetupFlag::suspicious_units));
+  }
+  SECTION("values that look like other units: in the report, and refused on request") {
+    SetupOptions refusing;
+    refusing.admission.units = Admission::refuse;
+    const Scene heavy = brick_scene().gravity({0.0, 0.0, -9.81});
+    struct Case {
+      LinearElastic material;
+      Scene scene;
+      double value;
+      const char* remark;
+    };
+    const Case cases[]{
+        {{5.0, 0.4, 1000.0}, brick_scene(), 5.0, "has a Young's modulus of 5 Pa"},
+        {{5e9, 0.4, 1000.0}, brick_scene(), 5e9, "has a Young's modulus of 5e+09 Pa"},
+        {{5e3, 0.4, 1.06}, heavy, 1.06, "has a density of 1.06 kg/m^3"},
+        {{5e3, 0.4, 1.06e6}, heavy, 1.06e6, "has a density of 1060000 kg/m^3"},
+        {{5e3, 0.4, 1060.0}, brick_scene().gravity({0.0, 0.0, -9810.0}), 9810.0, "gravity is 9810 m/s^2"},
+        {{5e3, 0.4, 1060.0}, Scene().fix("z0").touch("z1", {.radius = 4.0}), 4.0, "the tool has a radius of 4 m"},
+    };
+    for (const Case& c : cases) {
+      INFO(c.remark);
+      const auto model = model_of(brick(), c.scene, c.material);
+      CHECK(model->report().has(SetupFlag::suspicious_units));
+      std::ostringstream text;
+      text << model->report();
+      CHECK_THAT(text.str(), contains(c.remark));
+      const SetupProblem problem = refusal([&] { model_of(brick(), c.scene, c.material, refusing); });
+      CHECK(problem.kind == SetupErrorKind::suspicious_units);
+      CHECK(std::abs(problem.value - c.value) <= 1e-9 * c.value);
+      CHECK_THAT(problem.what, contains(c.remark));
+    }
+    const auto both = model_of(brick(), heavy, {5.0, 0.4, 1.06});
+    CHECK(both->report().remarks.size() == 1);  // one sentence for the flag
+    for (const double modulus : {200.0, 5e3, 5e7})
+      for (const double density : {0.0, 250.0, 1060.0, 8000.0}) {
+        const auto model = model_of(brick(), brick_scene(), {modulus, 0.4, density}, refusing);
+        CHECK_FALSE(model->report().has(SetupFlag::suspicious_units));
+      }
+    // Bone beside tissue, or metal, is not suspicious.
+    const Scene scene = Scene().fix("fixed").touch("end");
+    const Materials two{{"cube_a", {1e3, 0.3, 0.0}}, {"cube_b", {2e11, 0.3, 7800.0}}};
+    CHECK_FALSE(make_model(PolicyName::sparse_cholesky, two_cubes(), scene, two, refusing)
+                    ->report()
+                    .has(SetupFlag::suspicious_units));
+  }
+  SECTION("a touchable part that is fixed") {
+    CHECK(model_of(brick(), Scene().fix("z0").touch("z0"))->report().has(SetupFlag::fixed_contact));
+    CHECK_FALSE(model_of(brick(), Scene().fix("z0").touch("surface"))->report().has(SetupFlag::fixed_contact));
+    const Scene sliding = Scene().fix("z0").prescribe("z1", {std::nullopt, std::nullopt, 0.0}).touch("z1");
+    CHECK_FALSE(model_of(brick(), sliding)->report().has(SetupFlag::fixed_contact));
   }
   SECTION("pieces") {
     Mesh<Tet4> mesh = brick();

@@ -1,4 +1,4 @@
-// expect: this tissue needs background_work() and report_slow(bool) noexcept
+// expect: this tissue needs background_work(), report_slow(bool) noexcept and report_failed(bool)
 // A class that wraps a tissue without its background work: the worker would start no thread, and the tissue never move.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>

@@ -64,6 +64,7 @@ class OrganOf final : public Organ {
     return model_.background_work();
   }
   auto report_slow(bool slow) noexcept { return model_.report_slow(slow); }
+  auto report_failed(bool failed) noexcept { return model_.report_failed(failed); }
 
   bool draw(const ServoSnapshot& snapshot, Field field, DrawnSurface& surface) override {
     if (drawn_.update()) ++revision_;

@@ -316,7 +316,8 @@ PALPATE_C_API palpate_error palpate_session_tick(palpate_session* session, const
 /* Back to the state after creation, except the heat of the motors. In the thread that ticks. */
 PALPATE_C_API palpate_error palpate_session_reset(palpate_session* session);
 /* With manual_work: one step of a tissue that moves, or all cuts that wait; *worked is 0 when there was nothing to do.
- * `worked` may be null. */
+ * `worked` may be null. Without manual_work PALPATE_INVALID_ARGUMENT; if the background thread has stopped because of an
+ * error (status StalledTissue), that error. */
 PALPATE_C_API palpate_error palpate_session_work(palpate_session* session, int32_t* worked);
 
 /* The drawn surface. One thread draws; it never delays the thread that ticks. */

@@ -18,6 +18,7 @@ struct StillTissue {
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   NoHook background_work() noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
+  NoHook report_failed(bool) noexcept { return {}; }
 };
 
 }}  // namespace palpate

@@ -1,9 +1,12 @@
 // Base class of a tissue that wraps another one.
 #pragma once
 
+#include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -42,6 +45,14 @@ class TissueAdaptor {
   auto try_cut(const BladeSweep& sweep) noexcept { return tissue_->try_cut(sweep); }
   auto background_work() { return tissue_->background_work(); }
   auto report_slow(bool slow) noexcept { return tissue_->report_slow(slow); }
+  auto report_failed(bool failed) noexcept { return tissue_->report_failed(failed); }
+
+  TissueClaim& claim() noexcept requires requires(Tissue& t) { t.claim(); }
+  { return tissue_->claim(); }
+  std::vector<std::string> notes() const requires requires(const Tissue& t) { t.notes(); }
+  { return tissue().notes(); }
+  bool refuses_suspicious_units() const noexcept requires requires(const Tissue& t) { t.refuses_suspicious_units(); }
+  { return tissue().refuses_suspicious_units(); }
 
  protected:
   Tissue& tissue() noexcept { return *tissue_; }

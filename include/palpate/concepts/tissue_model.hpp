@@ -80,9 +80,10 @@ concept HasTryCut = requires(T& tissue, const BladeSweep& sweep) {
   { tissue.try_cut(sweep) } noexcept -> HookResult<bool>;
 };
 template <class T>
-concept HasWorkHooks = requires(T& tissue, bool slow) {
+concept HasWorkHooks = requires(T& tissue, bool is) {
   { tissue.background_work() } -> HookResult<BackgroundStep>;
-  { tissue.report_slow(slow) } noexcept -> HookResult<void>;
+  { tissue.report_slow(is) } noexcept -> HookResult<void>;
+  { tissue.report_failed(is) } noexcept -> HookResult<void>;
 };
 template <class T>
 concept HasHooks = HasPrefetch<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
@@ -157,9 +158,14 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
 /// pending. Only such a tissue accepts a BladeTool.
 /// - `background_work()` -> BackgroundStep: work in a background thread, called by a BackgroundWorker: time steps,
-/// cuts. May throw.
+/// cuts. May throw: the worker then stops.
 /// - `report_slow(slow)` -> void: reports whether a BackgroundWorker cannot keep up.
-/// All but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two calls of
+/// - `report_failed(failed)` -> void: reports whether a BackgroundWorker has stopped because `background_work` threw;
+/// `begin_tick` then reports stalled_tissue.
+/// A tissue may also have `claim()`, if only one servo at a time can use it (TissueClaim), `notes() const`, sentences for
+/// the report of a session as std::vector<std::string>, and `refuses_suspicious_units() const`: whether tools that look
+/// as if they were given in millimetres are refused.
+/// All hooks but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two calls of
 /// `begin_tick` the surface stays at the same place in memory.
 template <class T>
 concept TissueModel = detail::HasSurface<T> && detail::HasCompliance<T> && detail::HasComplianceScales<T> &&

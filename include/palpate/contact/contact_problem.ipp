@@ -199,13 +199,16 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
                                                      SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
   const LinearModelError& model = *body.model;
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
+  if (late_ || missing_depth() > 0.0) sphere.force = infinity;
   double sum = 0.0;
   for (const Contact& c : contacts.rows) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
     if (sum == 0.0) {
       const ContactMaterial material = surface.material(surface.triangles_at(body.first + c.vertices[0]).front());
-      sphere.modulus = material.modulus;
-      sphere.poisson_ratio = material.poisson_ratio;
+      if (material.modulus > 0.0) {
+        sphere.modulus = material.modulus;
+        sphere.poisson_ratio = material.poisson_ratio;
+      }
     }
     sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
     sum += std::abs(c.force) + c.friction.norm();

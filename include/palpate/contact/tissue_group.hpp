@@ -49,6 +49,11 @@ class TissueGroup : public StillTissue {
   /// them. Writes as many as fit and returns their number. No allocation.
   std::size_t forces_on(int member, std::span<const VertexForce> forces, std::span<VertexForce> own) const noexcept;
 
+  /// Those of all members.
+  std::vector<std::string> notes() const;
+  /// Whether one of them does.
+  bool refuses_suspicious_units() const noexcept;
+
   // TissueModel
   const ContactSurface& contact_surface() const noexcept { return surface_; }
   Status require_columns(std::span<const int> vertices) noexcept;

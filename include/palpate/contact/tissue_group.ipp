@@ -120,6 +120,17 @@ PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const Ve
   return count;
 }
 
+PALPATE_INLINE std::vector<std::string> TissueGroup::notes() const {
+  std::vector<std::string> all;
+  for (const Member& m : members_)
+    for (std::string& note : m.tissue.notes()) all.push_back(std::move(note));
+  return all;
+}
+PALPATE_INLINE bool TissueGroup::refuses_suspicious_units() const noexcept {
+  return std::any_of(members_.begin(), members_.end(),
+                     [](const Member& m) { return m.tissue.refuses_suspicious_units(); });
+}
+
 PALPATE_INLINE Status TissueGroup::require_columns(std::span<const int> vertices) noexcept {
   Status status;
   for (const Member& m : members_) {

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <palpate/concepts/detail/explain_tissue.hpp>
+#include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/contact/detail/contact_samples.hpp>
+
+#include <string>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -30,6 +34,9 @@ struct TissueFunctions {
   void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
   bool (*try_cut)(void*, const BladeSweep&) noexcept;
   bool has_contact_materials;
+  TissueClaim* (*claim)(void*) noexcept = nullptr;
+  std::vector<std::string> (*notes)(const void*) = nullptr;
+  bool (*refuses_units)(const void*) noexcept = nullptr;
 };
 
 template <class T>
@@ -122,6 +129,12 @@ struct TissueCalls {
       };
     if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
+    if constexpr (requires(T & t) { t.claim(); })
+      f.claim = [](void* t) noexcept -> TissueClaim* { return &of(t).claim(); };
+    if constexpr (requires(const T& t) { t.notes(); })
+      f.notes = [](const void* t) -> std::vector<std::string> { return of(t).notes(); };
+    if constexpr (requires(const T& t) { t.refuses_suspicious_units(); })
+      f.refuses_units = [](const void* t) noexcept -> bool { return of(t).refuses_suspicious_units(); };
     return f;
   }
   static constexpr TissueFunctions functions = table();
@@ -190,6 +203,16 @@ class TissueView {
     if (functions_->prepare_tools == nullptr) return;
     functions_->prepare_tools(tissue_, radii, parameters);
     look();
+  }
+
+  /// Null for a tissue that several servos may use.
+  TissueClaim* claim() const noexcept { return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr; }
+  /// What the set-up of the tissue reports, one sentence each. Allocates.
+  std::vector<std::string> notes() const {
+    return functions_->notes != nullptr ? functions_->notes(tissue_) : std::vector<std::string>{};
+  }
+  bool refuses_suspicious_units() const noexcept {
+    return functions_->refuses_units != nullptr && functions_->refuses_units(tissue_);
   }
 
   /// Whether the materials of the surface belong to the compliance: false for a tissue that changes the compliance of

@@ -34,10 +34,12 @@ enum class StatusFlag : std::uint32_t {
                                  ///< body cannot be touched; its force is zero, or points the wrong way
   material_exceeded = 1u << 19,  ///< an element is compressed or stretched beyond the range of its material law, which
                                  ///< yields there: forces are too small, or pull (non-linear models)
+  stalled_tissue = 1u << 20,     ///< the tissue has work that nobody does: steps or cuts without a BackgroundWorker or
+                                 ///< calls of advance() or process_cuts(), or a worker that has failed
 };
 
 /// Number of flags that exist.
-inline constexpr int status_flag_count = 20;
+inline constexpr int status_flag_count = 21;
 
 /// A set of StatusFlag. Trivially copyable; no operation allocates.
 class Status {
@@ -63,10 +65,10 @@ class Status {
 /// Name of flag number `bit` (0 ... status_flag_count - 1).
 constexpr std::string_view status_flag_name(int bit) {
   constexpr std::array<std::string_view, status_flag_count> names{
-      "NonFiniteInput",     "Saturated",       "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
-      "SolverNotConverged", "EnergyInjected",  "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
-      "NonFiniteForce",     "StepRefused",     "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement",
-      "LostContact",        "MaterialExceeded"};
+      "NonFiniteInput",     "Saturated",        "SlewLimited",   "Stale",        "DeadlineMissed", "Inverted",
+      "SolverNotConverged", "EnergyInjected",   "DegradedModel", "Disconnected", "Reacquired",     "Ramping",
+      "NonFiniteForce",     "StepRefused",      "EnergyGrew",    "SlowTissue",   "CoarseContact",  "LargeDisplacement",
+      "LostContact",        "MaterialExceeded", "StalledTissue"};
   return names[static_cast<std::size_t>(bit)];
 }
 

@@ -33,7 +33,7 @@ struct CutReport {
   /// Largest displacement of a touchable vertex by the scene's loads, against their mean, relative to the body's
   /// diagonal. Above 0.1 ticks report large_displacement: usually a remnant that hangs on a few faces.
   double displacement = 0.0;
-  bool failed = false;         ///< remaining body cannot be computed; the last good state is rendered, degraded_model
+  bool failed = false;  ///< remaining body cannot be computed; the last good state is rendered, degraded_model
 };
 
 }}  // namespace palpate

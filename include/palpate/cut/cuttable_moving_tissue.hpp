@@ -80,6 +80,7 @@ class CuttableMovingTissue : public MovingTissue {
     cut_motion_->restart(body_->topology);
     change_surface();
     failed_.store(false, std::memory_order_release);
+    halted_ = false;
     report_ = {.changes = report_.changes + 1};
     restart();
   }
@@ -177,14 +178,30 @@ class CuttableMovingTissue : public MovingTissue {
                           Vector3(loads.load[static_cast<std::size_t>(e)].row(a).transpose()));
     return sum;
   }
-  void prepare_step() noexcept override {
-    const CutOrders::Taken taken = orders_.take();
-    if (taken.count == 0) return;
-    if (!detail::attempt([&] { apply(taken); })) {
+  bool prepare_step() noexcept override {
+    if (halted_) return false;
+    CutOrders::Taken taken;
+    std::optional<Parts> before;
+    RestingEdges edges;
+    const Index size = cut_motion_->displacement().size();
+    const auto work = [&] {
+      taken = orders_.take();
+      if (taken.count == 0) return;
+      before = body_;
+      edges = edges_;
+      apply(taken);
+    };
+    if (!detail::attempt(work)) {
       failed_.store(true, std::memory_order_release);
       report_.failed = true;
+      halted_ = cut_motion_->displacement().size() != size;  // memory ended between motion and surface
+      if (before && !halted_) {
+        body_.swap(before);
+        std::swap(edges_, edges);
+      }
     }
-    orders_.done(taken);
+    if (taken.count > 0) orders_.done(taken);
+    return !halted_;
   }
   void apply(const CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
@@ -266,6 +283,7 @@ class CuttableMovingTissue : public MovingTissue {
   RestingEdges edges_;
   CutReport report_;
   std::atomic<bool> failed_{false};
+  bool halted_ = false;     // the surface does not fit to the motion: no steps until a reset
   std::uint64_t seen_ = 0;  // number of the surface that the session uses
 };
 

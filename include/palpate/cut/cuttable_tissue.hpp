@@ -1,6 +1,7 @@
 // Linear tissue that can be touched while it is cut; independent of material and solver.
 #pragma once
 
+#include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/detail/attempt.hpp>
@@ -27,7 +28,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// A linear body of elements E under cuts. Base of HapticFEModel on Cuttable<...>. `cut` orders a cut; `process_cuts`
 /// applies the orders, in a thread of the caller's choice (BackgroundWorker); a tick begins with the newest state and
 /// never waits. Directly after a cut the compliance is the old one plus a low-rank correction that the tick adds; then
-/// the correction is folded in. While an order is open, ticks report degraded_model. Vertex numbers never change, so
+/// the correction is folded in. While an order is open, ticks report degraded_model, and also stalled_tissue when
+/// nobody has called process_cuts for 500 ticks, or a BackgroundWorker has failed. Vertex numbers never change, so
 /// contact forces continue across a cut; the force gate limits their rate of change.
 ///
 /// Threads: `begin_tick`, the functions of TissueModel and `try_cut` belong to the thread that ticks; all others may be
@@ -47,15 +49,23 @@ class CuttableTissue : public ModelBase {
   void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
   /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
-  /// the deferred checks: error, bounds, nodes inside. True when there was something to do.
+  /// the deferred checks: error, bounds, nodes inside. True when there was something to do. Throws std::bad_alloc when
+  /// memory is short: the body is then that before the orders, which are dropped, or, when its new compliance was
+  /// complete, that after them, which the next call publishes.
   bool process_cuts() {
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
+    const CutServed::Call call(served_);
     const CutOrders::Taken taken = orders_.take();
-    const bool worked = process_->process(taken, inverse(to_world()));
-    failed_.store(process_->report().failed, std::memory_order_release);
-    if (taken.count > 0) orders_.done(taken);
-    return worked;
+    struct Done {
+      CuttableTissue& tissue;
+      const CutOrders::Taken& taken;
+      ~Done() {
+        tissue.failed_.store(tissue.process_->report().failed, std::memory_order_release);
+        if (taken.count > 0) tissue.orders_.done(taken);
+      }
+    } const done{*this, taken};
+    return process_->process(taken, inverse(to_world()));
   }
   /// The same for BackgroundWorker: checks for orders every 0.2 ms.
   BackgroundStep background_work() {
@@ -152,6 +162,7 @@ class CuttableTissue : public ModelBase {
     Status status;
     if (behind || contact().left_out) status.set(StatusFlag::degraded_model);
     if (contact().too_far) status.set(StatusFlag::large_displacement);
+    if (served_.is_stalled(orders_.are_open())) status.set(StatusFlag::stalled_tissue);
     return status;
   }
   /// Moves a session's contact to a new surface.
@@ -177,6 +188,9 @@ class CuttableTissue : public ModelBase {
   NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
+  void report_failed(bool failed) noexcept { served_.report_failed(failed); }
+  /// One servo at a time: a cut moves its contacts to the new surface.
+  TissueClaim& claim() noexcept { return claim_; }
   /// Number of rows of the correction that a tick currently adds.
   Index open_rank() const noexcept { return view().step->rank(); }
 
@@ -196,12 +210,13 @@ class CuttableTissue : public ModelBase {
     loaded_ = this->scene();
     std::optional<Selection> cuttable;
     if (parameters.cuttable) cuttable = palpate::mapped(*parameters.cuttable, node_map(), origin());
-    process_ = std::make_unique<CutProcess<E>>(prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()),
-                                               parameters, limits(), [this](CutView&& made) {
-                                                 views_.back() =
-                                                     std::move(made);  // frees views that no tick can access any more
-                                                 views_.publish();
-                                               });
+    process_ = std::make_unique<CutProcess<E>>(
+        prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()), parameters, limits(),
+        [this](CutView&& made) {
+          views_.back() = std::move(made);  // frees views that no tick can access any more
+          views_.publish();
+        },
+        setup_report());
     views_.update();
     setup_report().kept_dofs = process_->report().kept;
     setup_report().free_dofs = elastic_body().conditions(this->scene()).free_count();
@@ -224,6 +239,8 @@ class CuttableTissue : public ModelBase {
   Index elements_ = 0;
   mutable std::mutex changes_;
   CutOrders orders_;
+  CutServed served_;
+  TissueClaim claim_;
   std::atomic<bool> failed_{false};
   TripleBuffer<CutView> views_;
   std::uint64_t revision_ = 0;  // the last one seen by a tick

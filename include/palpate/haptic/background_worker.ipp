@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -17,6 +18,8 @@ struct BackgroundWorker::Thread {
   WorkerReport report;  // guarded by mutex; rate and mean are set when it is read
   double work_seconds = 0.0, tissue_seconds = 0.0;
   std::int64_t start = 0, end = 0;
+  std::exception_ptr failure;  // written before `failed` is set, and not after
+  std::atomic<bool> failed{false};
   std::thread thread;
 };
 
@@ -49,11 +52,28 @@ class PaceWatch {
   bool slow_ = false;
 };
 
+/// The message of an exception.
+inline std::string message_of(const std::exception_ptr& thrown) {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "an exception that is no std::exception";
+  }
+#else
+  static_cast<void>(thrown);
+  return {};
+#endif
+}
+
 }  // namespace detail
 
 PALPATE_INLINE BackgroundWorker::BackgroundWorker(void* tissue, const Functions& functions)
     : tissue_(tissue), functions_(functions), thread_(std::make_unique<Thread>()) {
   if (functions_.work == nullptr) return;
+  if (functions_.report_failed != nullptr) functions_.report_failed(tissue_, false);
   thread_->start = platform::wall_ns();
   thread_->thread = std::thread([this] { run(); });
 }
@@ -73,7 +93,36 @@ PALPATE_INLINE WorkerReport BackgroundWorker::report() const {
   const std::int64_t until = thread_->end != 0 ? thread_->end : platform::wall_ns();
   const double wall = 1e-9 * static_cast<double>(until - thread_->start);
   if (thread_->tissue_seconds > 0.0 && wall > 0.0) r.rate = thread_->tissue_seconds / wall;
+  if (failed()) r.failure = detail::message_of(thread_->failure);
   return r;
+}
+
+PALPATE_INLINE bool BackgroundWorker::failed() const noexcept {
+  return thread_->failed.load(std::memory_order_acquire);
+}
+
+PALPATE_INLINE void BackgroundWorker::rethrow_failure() const {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  if (failed()) std::rethrow_exception(thread_->failure);
+#endif
+}
+
+/// One piece of work. False when it threw.
+PALPATE_INLINE bool BackgroundWorker::work(BackgroundStep& done) noexcept {
+#if defined(PALPATE_HAS_EXCEPTIONS)
+  try {
+    done = functions_.work(tissue_);
+    return true;
+  } catch (...) {
+    thread_->failure = std::current_exception();
+  }
+  thread_->failed.store(true, std::memory_order_release);
+  if (functions_.report_failed != nullptr) functions_.report_failed(tissue_, true);
+  return false;
+#else
+  done = functions_.work(tissue_);
+  return true;
+#endif
 }
 
 PALPATE_INLINE void BackgroundWorker::run() {
@@ -81,7 +130,8 @@ PALPATE_INLINE void BackgroundWorker::run() {
   detail::PaceWatch pace(next);
   while (!thread_->stop.load(std::memory_order_relaxed)) {
     const std::int64_t before = platform::wall_ns();
-    const BackgroundStep done = functions_.work(tissue_);
+    BackgroundStep done;
+    if (!work(done)) break;
     const std::int64_t after = platform::wall_ns();
     if (done.worked) {
       const double seconds = 1e-9 * static_cast<double>(after - before);

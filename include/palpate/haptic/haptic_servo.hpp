@@ -12,6 +12,9 @@
 #include <palpate/haptic/tool_list.hpp>
 #include <palpate/haptic/detail/tool_input.hpp>
 
+#include <string>
+#include <vector>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
@@ -25,7 +28,9 @@ class HapticServo {
   using Energy = std::optional<EnergyTank>;
 
   /// Throws bad_argument for an invalid tool, coupling or limits, or when the tissue has no touchable surface;
-  /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut.
+  /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut, and for a tissue that moves or is cut
+  /// while another servo uses it; suspicious_units (ids: the tool) for a tool of more than a metre, if the tissue
+  /// refuses such (AdmissionPolicy::units): otherwise it is noted.
   /// Allocates everything that a tick needs.
   template <class T>
   requires(!std::same_as<std::remove_cv_t<T>, TissueView>)
@@ -63,6 +68,8 @@ class HapticServo {
   double missing_depth() const noexcept { return problem_.missing_depth(); }
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
+  /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
+  const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
   int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
   /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
@@ -115,6 +122,7 @@ class HapticServo {
   HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
               std::vector<EnergyTank> energies);
 
+  void check_units();
   void add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options);
   void note_updates() noexcept;
   void take(std::size_t i, const ToolState& state) noexcept;
@@ -131,6 +139,8 @@ class HapticServo {
   void publish() noexcept;
 
   TissueView tissue_;
+  ClaimedTissue claimed_;
+  std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;

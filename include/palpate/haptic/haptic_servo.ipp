@@ -52,6 +52,8 @@ inline bool is_zero(const Vector3& v) noexcept {
 PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
                                         std::vector<EnergyTank> energies)
     : tissue_(tissue),
+      claimed_(tissue_.claim()),
+      notes_(tissue_.notes()),
       tools_(tools),
       contact_tools_(make_contact_tools(tools_, options)),
       problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact.for_tools(tools.size()))),
@@ -68,6 +70,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
           "It must be positive, in seconds; infinity is allowed");
+  check_units();
   blades_.resize(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* blade = std::get_if<BladeTool>(&tools[i])) add_blade(*blade, i, options);
@@ -78,6 +81,27 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   Snapshot empty(problem_.capacity());
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
+}
+
+/// Notes or refuses tools that are larger than a metre.
+PALPATE_INLINE void HapticServo::check_units() {
+  constexpr double largest = 1.0;  // [m]
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const auto* const blade = std::get_if<BladeTool>(&tools_[i]);
+    const double size =
+        blade != nullptr ? blade->edge.norm() : contact_tools_[i].radius + contact_tools_[i].half_length;
+    if (!(size > largest)) continue;
+    SetupProblem problem;
+    problem.kind = SetupErrorKind::suspicious_units;
+    problem.what = "tool " + std::to_string(i) + " is " + number(size) + " m large: millimetres?";
+    problem.hint = "Lengths are metres; or accept it: AdmissionPolicy::units = Admission::accept";
+    problem.value = size;
+    problem.threshold = largest;
+    const auto id = static_cast<std::int64_t>(i);
+    problem.set_ids({&id, 1});
+    if (tissue_.refuses_suspicious_units()) raise(std::move(problem));
+    notes_.push_back(std::move(problem.what));
+  }
 }
 
 PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options) {
@@ -295,6 +319,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
   forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
+  if (tissue_.has_updates() && input.is_stalled(stale_tissue_after_)) forces_[i].status.set(StatusFlag::stalled_tissue);
   lost_contact_[i] = !blades_[i] && has_lost_contact(i);
   if (lost_contact_[i]) forces_[i].status.set(StatusFlag::lost_contact);
   const ForceError& error = errors_[i];

@@ -53,7 +53,9 @@ PALPATE_INLINE LoopReport HapticSession::run(const LoopOptions& options) {
     HapticServo& servo;
     ~Release() { servo.release(); }
   } const release{servo_};
-  return loop_->run(options);
+  LoopReport report = loop_->run(options);
+  report.notes = servo_.notes();
+  return report;
 }
 
 PALPATE_INLINE void HapticSession::start(const LoopOptions& options) {
@@ -68,6 +70,7 @@ PALPATE_INLINE void HapticSession::start(const LoopOptions& options) {
 PALPATE_INLINE LoopReport HapticSession::stop() {
   LoopReport report = loop_->stop();
   servo_.release();
+  report.notes = servo_.notes();
   return report;
 }
 

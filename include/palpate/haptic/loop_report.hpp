@@ -7,6 +7,7 @@
 #include <palpate/haptic/duration_histogram.hpp>
 
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -53,10 +54,11 @@ struct LoopReport {
   ForceErrorReport errors;             ///< of the contact forces, all tools together
   std::vector<DeviceReport> devices;   ///< the same, one per device
   RealtimeGrant real_time;
+  std::vector<std::string> notes;  ///< of a session: HapticServo::notes
 };
 
 /// A compact table: run parameters, percentiles, peak force, errors of the forces, status counts, granted real-time
-/// privileges.
+/// privileges, notes.
 std::ostream& operator<<(std::ostream& out, const LoopReport& r);
 
 }}  // namespace palpate

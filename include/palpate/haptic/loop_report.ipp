@@ -85,7 +85,9 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const LoopReport& r) 
   if (g.memory_locked) text += ", memory locked";
   if (g.cpu >= 0) text += ", on processor " + std::to_string(g.cpu);
   if (!g.refusals.empty()) text += "; refused: " + g.refusals;
-  return out << text << '\n';
+  out << text << '\n';
+  for (const std::string& note : r.notes) out << "  note: " << note << '\n';
+  return out;
 }
 
 }}  // namespace palpate

@@ -65,6 +65,25 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
     }
 }
 
+/// What a set-up was given that has units. The elasticity matrices are those of the regions, or of elements.
+struct UnitCheck {
+  std::span<const std::string> region_names;
+  std::span<const Matrix6> elasticities;  ///< [Pa]
+  std::span<const double> densities;      ///< [kg/m^3], of the regions
+  double gravity = 0.0;                   ///< [m/s^2]
+  double touch_radius = 0.0;              ///< [m]
+};
+
+/// Flags values that look like other units than SI, in addition to those that the flag has already: a material softer
+/// than 100 Pa, a body of which no material is softer than 0.1 GPa, a density outside 50 to 25 000 kg/m^3 (0: not
+/// given), gravity above 100 m/s^2, a tool of more than 1 m. With `refuse` throws suspicious_units for the first one
+/// (value, threshold; ids: the region).
+void report_units(const UnitCheck& given, bool refuse, SetupReport& report);
+
+/// Flags a touchable part all of whose nodes are fixed; `constrained` has the bits of every node's components.
+void report_fixed_contact(std::span<const std::uint8_t> constrained, std::span<const NodeId> touchable,
+                          SetupReport& report);
+
 /// Largest displacement against the mean that counts as small, relative to the diagonal of the bounding box.
 inline constexpr double largest_linear_displacement = 0.1;
 

@@ -51,6 +51,10 @@ struct SetupOptions {
 class ModelBase {
  public:
   const SetupReport& report() const noexcept { return report_; }
+  /// The sentences of its remarks, for the reports of sessions.
+  std::vector<std::string> notes() const;
+  /// Whether the set-up refused what looks like other units (AdmissionPolicy::units); servos then refuse such tools.
+  bool refuses_suspicious_units() const noexcept { return refuses_units_; }
   /// Origin of the frame of the admitted mesh, in the frame of the mesh as given [m].
   const Vector3& origin() const noexcept { return origin_; }
   /// New id of every node of the mesh as given, -1 for nodes dropped at admission.
@@ -81,7 +85,9 @@ class ModelBase {
   const OriginalIds& original_ids() const noexcept { return original_ids_; }
   OriginalIds& original_ids() noexcept { return original_ids_; }
 
-  /// Takes over an admitted body and resolves its touchable and rendered parts. Throws the errors of resolving.
+  /// Takes over an admitted body and resolves its touchable and rendered parts. Reports values that look like other
+  /// units, and a touchable part that is fixed. Throws the errors of resolving, and suspicious_units if the admission
+  /// policy refuses such values.
   Touchable admit(const Scene& scene, AdmittedBody admitted);
   /// The scene of the set-up, with the ids of the admitted mesh.
   const Scene& scene() const noexcept { return scene_; }
@@ -118,6 +124,7 @@ class ModelBase {
   std::string other_loads_;
   Vector3 origin_ = Vector3::Zero(), gravity_ = Vector3::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(), world_ = Eigen::Isometry3d::Identity();
+  bool refuses_units_ = false;
 };
 
 }}  // namespace palpate

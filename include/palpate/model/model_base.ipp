@@ -4,6 +4,7 @@
 #include <palpate/model/model_base.hpp>
 
 #include <palpate/core/rigid_motion.hpp>
+#include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
 #include <palpate/model/detail/touchable.hpp>
 
@@ -12,7 +13,8 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ModelBase::ModelBase(const SetupOptions& options)
-    : limits_{options.progress, options.memory_limit, options.threads} {}
+    : limits_{options.progress, options.memory_limit, options.threads},
+      refuses_units_(options.admission.units == Admission::refuse) {}
 PALPATE_INLINE ModelBase::ModelBase(ModelBase&&) noexcept = default;
 PALPATE_INLINE ModelBase& ModelBase::operator=(ModelBase&&) noexcept = default;
 PALPATE_INLINE ModelBase::~ModelBase() = default;
@@ -36,7 +38,17 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   rendered_ = body_->rendered(scene_);
   report_.touchable_vertices = static_cast<Index>(touchable_.size());
   report_.rendered_nodes = static_cast<Index>(rendered_.size());
+  const UnitCheck units{body_->region_names(), body_->elasticities(), body_->densities(), gravity_.norm(),
+                        scene_.touch_radius()};
+  report_units(units, refuses_units_, report_);
+  report_fixed_contact(body_->conditions(scene_).constrained, touchable_, report_);
   return touchable;
+}
+
+PALPATE_INLINE std::vector<std::string> ModelBase::notes() const {
+  std::vector<std::string> all;
+  for (const auto& [flag, remark] : report_.remarks) all.push_back(remark);
+  return all;
 }
 
 PALPATE_INLINE ContactSurface::Unloaded ModelBase::unloaded() const {

@@ -21,7 +21,7 @@ enum class SetupFlag : std::uint32_t {
   poor_quality = 1u << 2,      ///< slivers
   repaired = 1u << 3,          ///< admission changed the mesh
   disconnected = 1u << 4,      ///< more than one piece
-  suspicious_units = 1u << 5,  ///< looks like millimetres
+  suspicious_units = 1u << 5,  ///< a length, material or gravity looks like other units than SI
   cache_rejected = 1u << 6,    ///< there was a cache file and it was not used
   cache_unwritten = 1u << 7,   ///< the cache file could not be written
   non_manifold = 1u << 8,      ///< more than two touchable triangles meet at an edge
@@ -30,6 +30,7 @@ enum class SetupFlag : std::uint32_t {
   coarse_contact = 1u << 10,        ///< the facets are too long for the sphere that will touch: see AccuracyReport
   accuracy_not_reached = 1u << 11,  ///< the force error is above the wanted one, or not known: see AccuracyReport
   file_notes = 1u << 12,            ///< the mesh file has data that its reader did not use: see Mesh::notes
+  fixed_contact = 1u << 13,         ///< all nodes that can be touched are fixed: tools meet a rigid surface
 };
 
 /// Sizes, memory [bytes], times [s] and findings of a set-up.

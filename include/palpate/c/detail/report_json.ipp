@@ -97,6 +97,8 @@ std::string flag_name(SetupFlag flag) {
       return "accuracy_not_reached";
     case SetupFlag::file_notes:
       return "file_notes";
+    case SetupFlag::fixed_contact:
+      return "fixed_contact";
   }
   return "unknown";
 }

@@ -198,6 +198,7 @@ palpate_error palpate_session_work(palpate_session* session, int32_t* worked) {
   using namespace palpate::c_interface;
   return guarded([&] {
     palpate_session& s = object(session, "session");
+    if (s.worker) s.worker->rethrow_failure();
     if (s.worker) refuse("a background thread does this work", "Set manual_work in palpate_session_options");
     const bool did = s.claim.tissue().work();
     if (worked != nullptr) *worked = did ? 1 : 0;

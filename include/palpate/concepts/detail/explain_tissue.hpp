@@ -33,7 +33,8 @@ constexpr void explain_tissue() noexcept {
     PALPATE_HOOK(HasPrepareTools, "prepare_tools(const ToolRadii&, const ContactParameters&) -> void or NoHook");
     PALPATE_HOOK(HasTryCut, "try_cut(const BladeSweep&) noexcept -> bool or NoHook");
     PALPATE_HOOK(HasWorkHooks,
-                 "background_work() -> BackgroundStep or NoHook, or report_slow(bool) noexcept -> void or NoHook");
+                 "background_work() -> BackgroundStep or NoHook, report_slow(bool) or report_failed(bool), both "
+                 "noexcept -> void or NoHook");
 #undef PALPATE_HOOK
   }
 }

@@ -17,10 +17,14 @@
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/kept_dofs.hpp>
+#include <palpate/linear/condition.hpp>
 #include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/linear/detail/spd_inverse.hpp>
 #include <palpate/linear/detail/tile.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
+#include <palpate/model/detail/stage_timer.hpp>
+#include <palpate/model/setup_report.hpp>
+#include <palpate/model/static/detail/prepared_system.hpp>
 
 #include <memory>
 #include <utility>
@@ -33,9 +37,12 @@ template <Element E>
 class CutBase {
  public:
   /// `kept_nodes` that are not in the supported part are left out, and so are prescribed components. Throws as
-  /// assembly, factorisation and loads. Costs a factorisation, the inverse of the kept part and two substitutions.
+  /// assembly, factorisation and loads. Costs a factorisation, the inverse of the kept part and two substitutions. With
+  /// a report measures the accuracy, too, and throws ill_conditioned as the set-up of a static model.
   CutBase(const CutTopology<E>& topology, const CutPhysics<E>& physics, const std::vector<NodeId>& kept_nodes,
-          const SetupLimits& limits = {}) {
+          const SetupLimits& limits = {}, SetupReport* report = nullptr) {
+    SetupReport unused;
+    SetupReport& entries = report != nullptr ? *report : unused;
     std::vector<NodeId> node_map;
     std::vector<Index> element_map;
     Body<E> supported{topology.extract(ElementState::supported, node_map, element_map),
@@ -63,13 +70,14 @@ class CutBase {
     size_ = conditions.free_count();
     VectorX load = VectorX::Zero(size_);
     if (size_ > 0) {
-      const BlockMatrix k = assemble_stiffness<E>(supported, limits);
-      SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
-      if (schur.stiffness.rows() > 0)
-        SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
-      interior_ = std::move(schur.interior);
-      compliance_ = std::make_shared<const MatrixX>(std::move(schur.stiffness));
+      const BlockMatrix k = [&] {
+        const StageTimer timer(entries, "assembly");
+        return assemble_stiffness<E>(supported, limits);
+      }();
+      entries.stiffness_bytes = k.bytes();
+      take_factor(k, conditions, layout, limits, entries);
       load = free_load(topology, physics, k, conditions, node_map);
+      if (report != nullptr) check_accuracy(k, conditions, limits, *report);
     } else {
       compliance_ = std::make_shared<const MatrixX>();
     }
@@ -77,6 +85,10 @@ class CutBase {
   }
 
   Index size() const noexcept { return size_; }
+  /// Of factor and compliance.
+  std::size_t bytes() const noexcept {
+    return interior_.bytes() + static_cast<std::size_t>(compliance_->size()) * sizeof(double);
+  }
   /// Free dofs of the kept nodes, in the order of the compliance.
   const std::vector<NodeDof>& kept() const noexcept { return kept_; }
   const std::shared_ptr<const MatrixX>& compliance() const noexcept { return compliance_; }
@@ -100,6 +112,40 @@ class CutBase {
   }
 
  private:
+  /// The base as a LinearSolver.
+  struct Solver {
+    CutBase& base;
+    Index size() const noexcept { return base.size(); }
+    SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
+      base.solve(b, x);
+      return {true, 0, 0.0};
+    }
+  };
+
+  void take_factor(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                   const SetupLimits& limits, SetupReport& entries) {
+    SchurComplement schur = [&] {
+      const StageTimer timer(entries, "factorisation");
+      return condense(free_matrix(k, conditions), layout, limits);
+    }();
+    const StageTimer timer(entries, "compliance");
+    limits.advance("compliance", 0.0);
+    if (schur.stiffness.rows() > 0)
+      SpdInverse::invert(schur.stiffness, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
+    limits.advance("compliance", 0.5);
+    interior_ = std::move(schur.interior);
+    compliance_ = std::make_shared<const MatrixX>(std::move(schur.stiffness));
+  }
+  void check_accuracy(const BlockMatrix& k, const EssentialConditions& conditions, const SetupLimits& limits,
+                      SetupReport& report) {
+    const StageTimer timer(report, "checks");
+    limits.advance("checks", 0.0);
+    Solver solver{*this};
+    report.probe_error = probe_error(FreeStiffness(k, conditions), solver);
+    limits.advance("checks", 0.5);
+    report.condition_estimate = free_norm(k, conditions) * inverse_norm_estimate(solver);
+    detail::judge_accuracy(false, report);
+  }
   static EssentialConditions constrained_conditions(const CutTopology<E>& topology, const CutPhysics<E>& physics,
                                                     const std::vector<NodeId>& node_map, Index count) {
     EssentialConditions c;

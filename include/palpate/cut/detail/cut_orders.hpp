@@ -1,4 +1,4 @@
-// A queue of cuts that are not applied yet.
+// A queue of cuts that are not applied yet, and whether somebody applies them.
 #pragma once
 
 #include <palpate/contact/detail/blade_sweep.hpp>
@@ -7,6 +7,8 @@
 #include <palpate/cut/detail/topology_change.hpp>
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <vector>
 
@@ -27,7 +29,7 @@ class CutOrders {
   /// From the thread that ticks; false when 256 sweeps are waiting. Neither waits nor allocates.
   bool try_add(const BladeSweep& sweep) noexcept;
 
-  /// Called by one thread at a time.
+  /// Called by one thread at a time. Without memory it throws, and all orders stay.
   Taken take();
   void done(const Taken& taken) noexcept { open_.fetch_sub(taken.count, std::memory_order_release); }
   bool are_open() const noexcept { return open_.load(std::memory_order_acquire) != 0; }
@@ -36,8 +38,50 @@ class CutOrders {
   std::mutex mutex_;
   std::vector<CutOrder> orders_;
   std::vector<BladeSweep> sweeps_;
-  SpscRing<BladeSweep, 256> from_ticks_;
+  static constexpr std::size_t most_from_ticks = 256;
+  SpscRing<BladeSweep, most_from_ticks> from_ticks_;
   std::atomic<unsigned> open_{0};
+};
+
+/// Whether somebody processes orders: for the thread that does, and the one that ticks.
+class CutServed {
+ public:
+  static constexpr int patience = 500;  ///< ticks
+
+  /// A call of the function that processes orders; one at a time.
+  class Call {
+   public:
+    explicit Call(CutServed& served) noexcept : served_(served) { served_.step(); }
+    ~Call() { served_.step(); }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    CutServed& served_;
+  };
+  void report_failed(bool failed) noexcept { failed_.store(failed, std::memory_order_relaxed); }
+
+  /// Once per tick: whether orders wait and no call has begun, ended or been in progress for so many ticks; true from
+  /// the failure of a worker until the next call.
+  bool is_stalled(bool orders_wait) noexcept {
+    const std::uint64_t count = count_.load(std::memory_order_acquire);
+    if (!orders_wait || count != seen_ || count % 2 != 0) waited_ = 0;
+    seen_ = count;
+    if (orders_wait && waited_ <= patience) ++waited_;
+    return waited_ > patience || failed_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  /// Odd while a call is in progress.
+  void step() noexcept {
+    count_.fetch_add(1, std::memory_order_release);
+    report_failed(false);
+  }
+
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<bool> failed_{false};
+  std::uint64_t seen_ = 0;  // by the thread that ticks
+  int waited_ = 0;          // ticks
 };
 
 }}  // namespace palpate

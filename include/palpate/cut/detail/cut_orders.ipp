@@ -27,6 +27,7 @@ PALPATE_INLINE bool CutOrders::try_add(const BladeSweep& sweep) noexcept {
 
 PALPATE_INLINE CutOrders::Taken CutOrders::take() {
   Taken taken;
+  if (!are_open()) return taken;
   {
     const std::scoped_lock lock(mutex_);
     taken.count = static_cast<unsigned>(orders_.size() + sweeps_.size());
@@ -34,10 +35,13 @@ PALPATE_INLINE CutOrders::Taken CutOrders::take() {
       taken.order.remove.insert(taken.order.remove.end(), order.remove.begin(), order.remove.end());
       taken.order.open.insert(taken.order.open.end(), order.open.begin(), order.open.end());
     }
+    sweeps_.reserve(sweeps_.size() + most_from_ticks);  // from here on nothing allocates
     orders_.clear();
     taken.sweeps.swap(sweeps_);
   }
-  for (BladeSweep sweep; from_ticks_.pop(sweep); ++taken.count) taken.sweeps.push_back(sweep);
+  BladeSweep sweep;
+  for (std::size_t k = 0; k < most_from_ticks && from_ticks_.pop(sweep); ++k, ++taken.count)
+    taken.sweeps.push_back(sweep);
   return taken;
 }
 

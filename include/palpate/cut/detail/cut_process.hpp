@@ -18,6 +18,7 @@
 #include <array>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,33 +33,35 @@ class CutProcess : public CutState<E> {
   using State = CutState<E>;
   using typename State::Publish;
 
-  /// Throws as factorisation.
-  CutProcess(CutPreparation<E> prepared, const CutParameters& parameters, const SetupLimits& limits, Publish publish_to)
-      : State(std::move(prepared), limits, std::move(publish_to)),
+  /// Enters stages, memory and accuracy into the report. Throws as factorisation, and ill_conditioned.
+  CutProcess(CutPreparation<E> prepared, const CutParameters& parameters, const SetupLimits& limits, Publish publish_to,
+             SetupReport& report)
+      : State(std::move(prepared), limits, std::move(publish_to), report),
         whole_topology_(topology_),
         whole_surface_(touchable_),
-        parameters_(parameters) {}
+        parameters_(parameters) {
+    remember();
+  }
 
   /// Applies all orders as one cut: publishes the updated compliance, then folds the update in. Without orders, runs
   /// one of the deferred checks. True when there was something to do. `local` maps the world to the frame of the mesh.
+  /// Throws when memory is short; the body is then that before the orders, or, if its compliance was complete, that
+  /// after them, and the next call publishes it.
   bool process(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    const bool renewed = take_renewal();
-    if (taken.count == 0) return check_next() || renewed;
-    const TopologyChange<E> change = topology_.apply(order_of(taken, local));
-    if (change.empty()) return true;
-    ++report_.cuts;
-    ++report_.changes;
-    if (!change.fragments.empty()) system_.recover();  // displacement before this cut
-    resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
-    touchable_.update(topology_, change);
-    take_in(change);
-    report_.latency = seconds();
-    settle();
-    report_.fold_seconds = seconds();
+    const bool renewed = take_renewal(), caught_up = catch_up();
+    if (taken.count == 0) return caught_up || check_next() || renewed;
+    if (!before_) remember();
+    const long cuts = report_.cuts, changes = report_.changes;
+    has_new_compliance_ = false;
+    detail::run_or_undo([&] { cut(taken, local); },
+                        [&] {
+                          report_.failed = true;
+                          is_behind_ = has_new_compliance_;
+                          if (has_new_compliance_) return;
+                          go_back();
+                          report_.cuts = cuts;
+                          report_.changes = changes;
+                        });
     return true;
   }
 
@@ -67,9 +70,9 @@ class CutProcess : public CutState<E> {
     auto physics = std::make_unique<CutPhysics<E>>(physics_->body, boundary, scene);
     CutSystem<E> fresh(topology_, *physics, kept_nodes(), limits_);
     renewal_.reset();
-    swept_.resize(0);
-    physics_.swap(physics);
     take_over(std::move(fresh));
+    physics_.swap(physics);
+    swept_.resize(0);
   }
   /// Restores the uncut body under these loads; a new factor. Strong guarantee.
   void reset(const std::vector<BoundaryFace>& boundary, const Scene& scene) {
@@ -86,6 +89,7 @@ class CutProcess : public CutState<E> {
     };
     detail::run_or_undo([&] { set_loads(boundary, scene); }, undo);
     edges_.clear();
+    before_.reset();
     const CutReport before = std::exchange(report_, CutReport{});
     report_.kept = system_.kept();
     report_.error = before.error;
@@ -115,6 +119,54 @@ class CutProcess : public CutState<E> {
   static constexpr std::size_t checks = 3;
   static constexpr int most_unchecked = 8;
 
+  /// What an order changes beside the compliance.
+  struct Parts {
+    CutTopology<E> topology;
+    CutSurface<E> touchable;
+    RestingNodes resting;
+    RestingEdges edges;
+  };
+  /// Copies these parts, so that an order can be taken back.
+  void remember() { before_ = Parts{topology_, touchable_, resting_, edges_}; }
+  void go_back() noexcept {
+    topology_ = std::move(before_->topology);
+    touchable_ = std::move(before_->touchable);
+    resting_ = std::move(before_->resting);
+    edges_ = std::move(before_->edges);
+    before_.reset();
+  }
+  void cut(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const TopologyChange<E> change = topology_.apply(order_of(taken, local));
+    if (change.empty()) return;
+    ++report_.cuts;
+    ++report_.changes;
+    if (!change.fragments.empty()) system_.recover();  // displacement before this cut
+    resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
+    touchable_.update(topology_, change);
+    take_in(change);
+    report_.latency = seconds();
+    settle();
+    report_.fold_seconds = seconds();
+    if (!detail::attempt([&] { remember(); })) before_.reset();  // the next cut tries again
+  }
+  /// Completes a cut that ended early because memory was short; true when there was one.
+  bool catch_up() {
+    const bool behind = is_behind_;
+    if (behind) {
+      system_.fold();
+      ++cut_;
+      make_contact();
+      publish_exactly();
+      report_.kept = system_.kept();
+      report_.failed = is_behind_ = false;
+    }
+    return behind;
+  }
+
   bool& is_due(Check check) noexcept { return due_[static_cast<std::size_t>(check)]; }
   void measure() {
     report_.error = system_.measured_error();
@@ -140,15 +192,18 @@ class CutProcess : public CutState<E> {
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
   /// precision.
   void take_in(const TopologyChange<E>& change) {
+    if (!follows_topology_) return renew();
     const bool is_taken = detail::attempt_unless_refused([&] {
       ++cut_;
       const auto step = system_.update(topology_, change);
+      has_new_compliance_ = true;
       report_.rank = step->rank();
       report_.smallest = step->smallest;
       make_contact();
       CutView made{contact_, step};
       made.bound_by(bound_);
       publish(std::move(made));
+      report_.failed = false;
     });
     if (!is_taken) renew();
   }
@@ -204,18 +259,31 @@ class CutProcess : public CutState<E> {
     if (detail::attempt_unless_refused([&] { take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); }))
       return;
     report_.failed = true;
+    follows_topology_ = false;
     due_.fill(false);
   }
+  /// Strong guarantee.
   void take_over(CutSystem<E>&& fresh) {
-    system_ = std::move(fresh);
-    ++report_.renewals;
+    const double error = fresh.measured_error();
+    fresh.recover();
+    std::swap(system_, fresh);
+    const auto contact = contact_;
     ++cut_;
+    const auto publish_it = [&] {
+      make_contact();
+      publish_exactly();
+    };
+    detail::run_or_undo(publish_it, [&] {
+      std::swap(system_, fresh);
+      contact_ = contact;
+    });
+    follows_topology_ = has_new_compliance_ = true;
+    is_behind_ = false;
+    ++report_.renewals;
     report_.kept = system_.kept();
     report_.failed = false;
-    measure();
-    system_.recover();
-    make_contact();
-    publish_exactly();
+    report_.error = error;
+    report_.unchecked = 0;
     due_.fill(false);
   }
 
@@ -223,7 +291,11 @@ class CutProcess : public CutState<E> {
   CutSurface<E> whole_surface_;
   CutParameters parameters_;
   RestingEdges edges_;
-  VectorX swept_;  // displacement of the nodes through which blades cut
+  VectorX swept_;                   // displacement of the nodes through which blades cut
+  std::optional<Parts> before_;     // the last order
+  bool follows_topology_ = true;    // the compliance is that of the topology
+  bool has_new_compliance_ = true;  // it has that of the present order
+  bool is_behind_ = false;          // it is not published, because memory was short
   std::array<bool, checks> due_{};
   std::size_t last_check_ = 0;
   std::unique_ptr<CutRenewal<E>> renewal_;  // declared last: its thread refers to the physics

@@ -16,6 +16,7 @@
 #include <palpate/model/detail/touchable.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -68,17 +69,20 @@ class CutState {
 
  protected:
   /// Throws as factorisation.
-  CutState(CutPreparation<E> prepared, const SetupLimits& limits, Publish publish)
+  CutState(CutPreparation<E> prepared, const SetupLimits& limits, Publish publish, SetupReport& report)
       : physics_(std::make_unique<CutPhysics<E>>(std::move(prepared.physics))),
         topology_(std::move(prepared.topology)),
         touchable_(std::move(prepared.touchable)),
         cuttable_(std::move(prepared.cuttable)),
         limits_(limits),
         publish_to_(std::move(publish)),
-        system_(topology_, *physics_, kept_nodes(), limits_),
+        system_(topology_, *physics_, kept_nodes(), limits_, &report),
         diagonal_(box_of(topology_.mesh().positions).size().norm()) {
     limits_.threads = 1;  // beside a haptic loop from here on
+    limits_.progress = {};
+    find_supports();
     report_.kept = system_.kept();
+    const StageTimer timer(report, "contact");
     make_contact();
     publish_exactly();
   }
@@ -131,12 +135,36 @@ class CutState {
         displacements.push_back(positions[v] - topology_.mesh().position(touchable_.nodes()[v]));
     return displacements;
   }
+  /// Finds how far the nodes that may be touched are from a constrained one, in the body before any cut.
+  void find_supports() {
+    std::vector<Vector3> constrained;
+    for (NodeId node = 0; node < topology_.mesh().node_count(); ++node)
+      if (topology_.constrained()[static_cast<std::size_t>(node)] != 0)
+        constrained.push_back(topology_.mesh().position(node));
+    support_.assign(static_cast<std::size_t>(topology_.mesh().node_count()), infinity);
+    for (const NodeId node : kept_nodes()) {
+      double square = infinity;
+      for (const Vector3& p : constrained)
+        square = std::min(square, (p - topology_.mesh().position(node)).squaredNorm());
+      support_[static_cast<std::size_t>(topology_.origin_of(node))] = std::sqrt(square);
+    }
+    size_ = box_of(topology_.mesh().positions).size().maxCoeff();
+  }
+  /// What ticks need to know how far linear elasticity is off.
+  LinearModelError model_error() const {
+    LinearModelError error;
+    error.body_size = size_;
+    for (const NodeId node : touchable_.nodes())
+      error.supports.push_back(support_[static_cast<std::size_t>(topology_.origin_of(node))]);
+    return error;
+  }
   void make_contact() {
     std::vector<Vector3> positions;
     for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
     const ToolRadii radii = tools_.radii.smallest > 0.0 ? tools_.radii : ToolRadii(longest_edge(positions));
     report_.displacement = displacement_spread(displacements_to(positions)) / diagonal_;
     contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radii, tools_.contact, cut_);
+    contact_->surface.set_model_error(model_error());
     contact_->too_far = !(report_.displacement <= largest_linear_displacement);
   }
   void publish_exactly() {
@@ -158,7 +186,8 @@ class CutState {
   Publish publish_to_;
   CutSystem<E> system_;
   RestingNodes resting_;
-  double diagonal_;  // of the bounding box [m]
+  double diagonal_, size_ = 0.0;  // of the bounding box, and its longest edge [m]
+  std::vector<double> support_;   // per node before any cut, distance to a constrained one [m]; infinity: not touched
   CutReport report_;
   std::shared_ptr<CutContact> contact_;  // of the last cut
   std::vector<double> bound_;            // of the last view

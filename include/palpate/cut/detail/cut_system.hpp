@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
@@ -38,10 +39,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <Element E>
 class CutSystem {
  public:
-  /// `physics` must outlive it. Throws as CutBase.
+  /// `physics` must outlive it. Enters stages, memory and accuracy into a report. Throws as CutBase.
   CutSystem(const CutTopology<E>& topology, const CutPhysics<E>& physics, const std::vector<NodeId>& kept_nodes,
-            const SetupLimits& limits = {})
-      : physics_(&physics), base_(topology, physics, kept_nodes, limits) {
+            const SetupLimits& limits = {}, SetupReport* report = nullptr)
+      : physics_(&physics), base_(topology, physics, kept_nodes, limits, report) {
     compliance_ = base_.compliance();
     for (const NodeDof& dof : base_.kept()) dofs_.add(dof);
     source_.resize(topology.mesh().positions.size());
@@ -51,6 +52,9 @@ class CutSystem {
     constexpr int spare = 3;  // one to write, and those used by the tick and by the buffer in between
     limits.require_memory(MatrixPool::bytes(none_, spare), "storage for the compliances of cuts");
     pool_.prepare(none_, spare);
+    if (report == nullptr) return;
+    report->solver_bytes = base_.bytes();
+    report->compliance_bytes = static_cast<std::size_t>(MatrixPool::bytes(none_, spare));
   }
 
   /// Applies a cut and returns the step that is read from now on, until `fold`. Strong guarantee. Throws
@@ -63,8 +67,20 @@ class CutSystem {
     const MatrixX columns = columns_of(plan, units);
     auto step = std::make_shared<CutStep>();
     solve_small(plan, columns, *step);
-    if (units.size() > 0) promoted_.push_back({kept(), std::move(units)});
-    accept(topology, plan, *step);
+    const typename ElementChanges<E>::Before changes(changes_, change);
+    const std::size_t promoted = promoted_.size(), nodes = source_.size();
+    const Index kept_before = kept();
+    detail::run_or_undo(
+        [&] {
+          if (units.size() > 0) promoted_.push_back({kept(), std::move(units)});
+          accept(topology, plan, *step);
+        },
+        [&] {  // memory is short
+          while (promoted_.size() > promoted) promoted_.pop_back();
+          while (source_.size() > nodes) source_.pop_back();
+          dofs_.shrink_to(kept_before);
+          changes_.take_back(changes);
+        });
     step_ = step;
     return step;
   }
@@ -232,25 +248,24 @@ class CutSystem {
     step.y = y.leftCols(n);
   }
 
-  /// From here on only a lack of memory can throw.
+  /// Only a lack of memory can throw; the displacement is then unchanged.
   void accept(const CutTopology<E>& topology, const CutPlan<E>& plan, const CutStep& step) {
-    const Index nodes = topology.mesh().node_count(), before = displacement_.size() / 3;
-    displacement_.conservativeResize(3 * nodes);
-    for (Index node = before; node < nodes; ++node) displacement_.template segment<3>(3 * node).setZero();
+    VectorX displacement = VectorX::Zero(3 * topology.mesh().node_count());
+    displacement.head(displacement_.size()) = displacement_;
     for (const NodeCopy& copy : plan.change->copies) source_.push_back(source_[static_cast<std::size_t>(copy.parent)]);
     for (const NodeCopy& copy : plan.change->copies)
-      displacement_.template segment<3>(3 * Index{copy.node}) =
-          displacement_.template segment<3>(3 * Index{copy.parent});
+      displacement.template segment<3>(3 * Index{copy.node}) = displacement.template segment<3>(3 * Index{copy.parent});
     for (const auto* list : {&plan.promoted, &plan.fresh})
       for (const NodeDof& d : *list) dofs_.add(d);
     for (const ChangedElement<E>& x : plan.change->elements)
       changes_.add(x, physics_->stiffness(x.element), physics_->load_of(x.element));
     for (const auto& pin : plan.pins) changes_.add(pin);
-    move(step);
+    move(step, displacement);
+    displacement_.swap(displacement);
   }
   /// Displacement of kept nodes: from the rest state of the factor and the forces that all cuts since have released. It
   /// does not start from the state before this cut, so errors do not accumulate.
-  void move(const CutStep& step) {
+  void move(const CutStep& step, VectorX& displacement) const {
     VectorX force = VectorX::Zero(kept());
     changes_.add_forces([&](NodeId node) { return rest_of(node); },
                         [&](NodeId node, const Vector3& f) {
@@ -269,7 +284,7 @@ class CutSystem {
         step.extra.topRows(old).transpose() * head + step.extra.bottomRows(rest) * force.tail(rest);
     for (Index i = 0; i < step.all; ++i) {
       const NodeDof& d = dofs_[i];
-      dofs_.at(displacement_, i) = rest_of(d.node)[d.component] + u[i];
+      dofs_.at(displacement, i) = rest_of(d.node)[d.component] + u[i];
     }
   }
   /// Displacement, in the factor, of the node from which a node was copied.

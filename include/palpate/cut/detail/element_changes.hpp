@@ -50,6 +50,39 @@ class ElementChanges {
   }
   void add(const Pin& pin) { pins_.push_back(pin); }
 
+  /// What a further change overwrites, to take it back.
+  class Before {
+   public:
+    Before(const ElementChanges& all, const TopologyChange<E>& change) : pins_(all.pins_.size()) {
+      for (const ChangedElement<E>& x : change.elements) {
+        const auto at = all.changed_.find(x.element);
+        entries_.push_back(at == all.changed_.end() ? Entry{x.element, false, {}, false}
+                                                    : Entry{x.element, true, at->second.now, at->second.removed});
+      }
+    }
+
+   private:
+    friend class ElementChanges;
+    struct Entry {
+      Index element;
+      bool known;
+      Connectivity now;
+      bool removed;
+    };
+    std::vector<Entry> entries_;
+    std::size_t pins_;
+  };
+  void take_back(const Before& before) noexcept {
+    while (pins_.size() > before.pins_) pins_.pop_back();
+    for (const auto& entry : before.entries_) {
+      const auto at = changed_.find(entry.element);
+      if (at == changed_.end()) continue;
+      at->second.now = entry.now;
+      at->second.removed = entry.removed;
+      if (!entry.known) changed_.erase(at);
+    }
+  }
+
   /// Places of all changed dofs, sorted.
   template <class Place>
   std::vector<Index> places(Place&& place) const {

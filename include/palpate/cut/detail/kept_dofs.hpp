@@ -22,7 +22,10 @@ class KeptDofs {
   const NodeDof& operator[](Index i) const noexcept { return dofs_[static_cast<std::size_t>(i)]; }
   /// Index of a dof, -1 when it is not kept.
   Index place(NodeId node, int component) const noexcept;
+  /// Strong guarantee.
   void add(const NodeDof& dof);
+  /// Removes those after the first `size`.
+  void shrink_to(Index size) noexcept;
   /// The entry of kept dof i in a vector with three values per node.
   double& at(VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }
   double at(const VectorX& u, Index i) const noexcept { return u[3 * Index{(*this)[i].node} + (*this)[i].component]; }

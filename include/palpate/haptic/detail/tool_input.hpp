@@ -33,7 +33,9 @@ class ToolInput {
   /// Notes whether the tissue was updated in the tick of this state.
   void note_tissue(bool has_news) noexcept;
   /// Time of the state for the gate: it stops once the tissue was not updated for `patience` [s].
-  double stamp(double patience) const noexcept { return time_ < news_ + patience ? time_ : news_ + patience; }
+  double stamp(double patience) const noexcept { return is_stalled(patience) ? news_ + patience : time_; }
+  /// Whether the tissue was not updated for that long.
+  bool is_stalled(double patience) const noexcept { return !(time_ < news_ + patience); }
 
   /// Stores where the tool would be without its dent, as a position outside the body. For the end of a tick with the
   /// contacts of that tick, for a tool that did not lose the surface.

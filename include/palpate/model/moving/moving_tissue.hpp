@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
+#include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/triple_buffer.hpp>
@@ -66,6 +67,9 @@ class MovingTissue : public ModelBase {
   /// Reports whether steps take longer to compute than their length, so that the tissue moves in slow motion; sets
   /// slow_tissue in ticks.
   void report_slow(bool slow) noexcept { slow_.store(slow, std::memory_order_relaxed); }
+  /// Reports whether a BackgroundWorker has stopped because a step threw; sets stalled_tissue in ticks until the next
+  /// step.
+  void report_failed(bool failed) noexcept { failed_work_.store(failed, std::memory_order_relaxed); }
   /// The motion; for the stepping thread.
   const TissueMotion& motion() const noexcept { return *motion_; }
 
@@ -97,8 +101,8 @@ class MovingTissue : public ModelBase {
   /// beyond the range of their material; solver_not_converged when the last step
   /// ended far from its solution; degraded_model when a step could not be corrected for the tool forces, so that only
   /// the next one includes them, or when there were more than most_forces; non_finite_force when the last `end_tick`
-  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up; large_displacement when
-  /// linear surroundings are displaced too far.
+  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up, stalled_tissue when it
+  /// has failed; large_displacement when linear surroundings are displaced too far.
   Status begin_tick() noexcept;
   /// Forces that are not finite are ignored.
   void end_tick(std::span<const VertexForce> forces) noexcept;
@@ -126,6 +130,8 @@ class MovingTissue : public ModelBase {
   /// Updates the description of loads that error messages contain; not while a session ticks.
   void prepare_tools(const ToolRadii&, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
+  /// One servo at a time: its forces load the next step.
+  TissueClaim& claim() noexcept { return claim_; }
 
  protected:
   explicit MovingTissue(const SetupOptions& options);
@@ -147,8 +153,8 @@ class MovingTissue : public ModelBase {
     std::shared_ptr<ContactProblem> contact;  ///< for a session to continue with
     Status status;                            ///< of ticks on this surface, in addition to those of the steps
   };
-  /// Called by `advance` before every step, with the changes locked out.
-  virtual void prepare_step() noexcept {}
+  /// Called by `advance` before every step, with the changes locked out. False: no step can be made.
+  virtual bool prepare_step() noexcept { return true; }
   /// Loads of a scene of the admitted mesh on the present body, without gravity, 3 per node [N]. Throws as the loads
   /// of a scene.
   virtual VectorX applied_load(const Scene& scene) const;
@@ -245,7 +251,8 @@ class MovingTissue : public ModelBase {
   Forces used_;
   std::uint64_t steps_ = 0;
   std::mutex changes_;
-  std::atomic<bool> slow_{false};
+  std::atomic<bool> slow_{false}, failed_work_{false};
+  TissueClaim claim_;
   TripleBuffer<View> views_;
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;

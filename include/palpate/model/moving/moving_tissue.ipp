@@ -95,7 +95,8 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
 PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const std::scoped_lock lock(changes_);
   const FlushDenormals flush;
-  prepare_step();
+  report_failed(false);
+  if (!prepare_step()) return {};
   pressing_.update();
   full_.setZero();
   add(pressing_.front(), 1.0, full_);
@@ -295,6 +296,7 @@ PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
   take_surface();
   Status status = views_.front().status | ticked_;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
+  if (failed_work_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
   return status;
 }
 

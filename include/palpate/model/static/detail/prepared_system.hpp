@@ -54,19 +54,24 @@ struct SystemSource {
   std::optional<AnyStaticSystem> read(PreparedCache& cache, SetupReport& report) const;
   AnyStaticSystem make(SetupReport& report) const;
   void estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system, SetupReport& report) const;
-  /// Flags or refuses the system by its measured accuracy.
-  void judge(SetupReport& report) const;
-  /// An estimate by iteration is a lower bound in the 2-norm, usually within a factor 10.
-  bool is_ill_conditioned(const SetupReport& report) const noexcept;
   /// Refuses a system whose softest motion is lost in rounding: a mechanism or near-mechanism that the geometric check
   /// does not find. Only checked when digits are lost.
   void require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system, const SetupReport& report) const;
 
-  static constexpr double flagged_probe_error = 1e-6;
-  static constexpr double flagged_condition = 1e12;
-  static constexpr double refused_probe_error = 1e-3;
   static constexpr double refused_softest_error = 0.1;
 };
+
+namespace detail {
+
+inline constexpr double flagged_probe_error = 1e-6, flagged_condition = 1e12, refused_probe_error = 1e-3;
+
+/// Whether the estimate of the condition is large. An estimate by iteration is a lower bound in the 2-norm, usually
+/// within a factor 10.
+bool is_ill_conditioned(const SetupReport& report, bool iterative) noexcept;
+/// Flags a system by its measured accuracy, or throws ill_conditioned.
+void judge_accuracy(bool iterative, SetupReport& report);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -100,13 +100,13 @@ PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& 
   detail::CheckingSolver solver(*system, limits);
   const double error = probe_error(FreeStiffness(stiffness.view(), conditions), solver);
   solver.require_going_on();
-  if (!(error <= refused_probe_error)) {
+  if (!(error <= detail::refused_probe_error)) {
     cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
     return std::nullopt;
   }
   report.condition_estimate = condition;
   report.probe_error = error;
-  judge(report);
+  detail::judge_accuracy(recipe.iterative, report);
   return system;
 }
 
@@ -119,7 +119,7 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
   const FreeStiffness free(stiffness.view(), conditions);
   estimate_accuracy(free, system, report);
   require_softest_motion(free, system, report);
-  judge(report);
+  detail::judge_accuracy(recipe.iterative, report);
   return system;
 }
 
@@ -135,7 +135,8 @@ PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, A
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
-  const bool doubtful = report.probe_error > flagged_probe_error || is_ill_conditioned(report);
+  const bool doubtful =
+      report.probe_error > detail::flagged_probe_error || detail::is_ill_conditioned(report, recipe.iterative);
   if (!doubtful) return;
   detail::CheckingSolver solver(system, limits);
   const SoftestMotion softest = probe_softest_motion(free, solver);
@@ -156,11 +157,13 @@ PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& fr
   raise(std::move(p));
 }
 
-PALPATE_INLINE bool SystemSource::is_ill_conditioned(const SetupReport& report) const noexcept {
-  return report.condition_estimate > (recipe.iterative ? 0.1 : 1.0) * flagged_condition;
+namespace detail {
+
+PALPATE_INLINE bool is_ill_conditioned(const SetupReport& report, bool iterative) noexcept {
+  return report.condition_estimate > (iterative ? 0.1 : 1.0) * flagged_condition;
 }
 
-PALPATE_INLINE void SystemSource::judge(SetupReport& report) const {
+PALPATE_INLINE void judge_accuracy(bool iterative, SetupReport& report) {
   if (report.probe_error > refused_probe_error) {
     SetupProblem p;
     p.kind = SetupErrorKind::ill_conditioned;
@@ -175,10 +178,12 @@ PALPATE_INLINE void SystemSource::judge(SetupReport& report) const {
   if (report.probe_error > flagged_probe_error)
     report.set(SetupFlag::ill_conditioned, "a solve with a known answer is wrong by " + number(report.probe_error) +
                                                " (relative): forces are no more accurate than that");
-  else if (is_ill_conditioned(report))
+  else if (is_ill_conditioned(report, iterative))
     report.set(SetupFlag::ill_conditioned,
                "the condition of the stiffness is about " + number(report.condition_estimate) +
                    ": a change of parameters in the last digits changes the forces noticeably");
 }
+
+}  // namespace detail
 
 }}  // namespace palpate
