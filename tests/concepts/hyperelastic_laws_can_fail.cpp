@@ -1,4 +1,5 @@
 // A deliberate break for every law of materials at large strain.
+#include <palpate/material/detail/material_range.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
@@ -25,7 +26,8 @@ enum class Break {
   single_lanes,
   admits_all,
   admits_nothing,
-  small_strain
+  small_strain,
+  always_beyond
 };
 
 /// The neo-Hookean material with one defect.
@@ -68,6 +70,9 @@ struct Wrong : Law {
   bool admits(const Tensor3<double>& f) const noexcept {
     if (wrong == Break::admits_all) return true;
     return wrong != Break::admits_nothing && Law::admits(f);
+  }
+  bool is_beyond_range(const Tensor3<double>& f) const noexcept {
+    return wrong == Break::always_beyond || palpate::detail::is_beyond_range(static_cast<const Law&>(*this), f);
   }
   Matrix6 rest_elasticity() const noexcept {
     return (wrong == Break::small_strain ? 1.0 + 1e-9 : 1.0) * Law::rest_elasticity();
@@ -113,6 +118,8 @@ TEST_CASE("hyperelastic material laws can fail", "[testing][material][large]") {
   CHECK(violates(broken<Break::admits_all, StVenantKirchhoff>(), "refuses J <= 0"));
   CHECK(violates(broken<Break::admits_nothing>(), "holds at moderate strain"));
   CHECK(violates(broken<Break::admits_nothing>(), "holds everywhere"));
+  CHECK(violates(broken<Break::always_beyond>(), "is within its range near rest"));
+  CHECK(violates(broken<Break::always_beyond>(), "is within its range above its volume ratio"));
   CHECK(violates(hyperelastic_material_laws(NeoHookean{5e3, 0.5, 0.0}), "check accepts"));
 }
 

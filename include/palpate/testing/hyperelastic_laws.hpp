@@ -8,6 +8,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
+#include <palpate/material/detail/material_range.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
@@ -213,6 +214,24 @@ Violations collapse_laws(const M& m, bool barrier) {
   return v;
 }
 
+/// A material "is within its range near rest", in every orientation; one that gives `range_volume_ratio` "is within its
+/// range above its volume ratio".
+template <HyperelasticMaterial M>
+Violations range_laws(const M& m) {
+  Violations v;
+  Random random(1948);
+  for (int k = 0; k < 64; ++k) {
+    const Tensor3<double> f = random_deformation(m, random), r = tensor3(random_rotation(random));
+    const Tensor3<double> near = r * plus_identity(0.01 * plus_identity(f, -1.0), 1.0);
+    expect_true(v, "is within its range near rest", !palpate::detail::is_beyond_range(m, near), detail::name_of(k));
+    if constexpr (palpate::detail::RangedByVolume<M>) {
+      const double scale = std::cbrt(1.001 * m.range_volume_ratio() / determinant(f));
+      expect_true(v, "is within its range above its volume ratio", !m.is_beyond_range(scale * f), detail::name_of(k));
+    }
+  }
+  return v;
+}
+
 /// All laws of one admissible material for large strain. Bounds are relative to its moduli, so they do not depend on
 /// the unit of stress.
 template <HyperelasticMaterial M>
@@ -230,6 +249,7 @@ Violations hyperelastic_material_laws(const M& material, HyperelasticClaims clai
   append(v, precision_law<Lanes<float, 16>>(material, modulus, "lanes of float equal double"));
   append(v, domain_laws(material));
   append(v, collapse_laws(material, claims.barrier));
+  append(v, range_laws(material));
   return v;
 }
 

@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Counts the lanes of every batch whose F is beyond the range. Where the material knows a volume ratio above which
 /// there are none, every evaluation examines all batches, most of them by one comparison. For other materials an
-/// examination takes 2 us: an evaluation examines every 32nd batch, in turn, and the others keep their count.
+/// examination takes 2 us: an evaluation examines every 128th batch, in turn, and the others keep their count.
 template <class M, class S, int N>
 class RangeWatch {
  public:
@@ -39,7 +39,7 @@ class RangeWatch {
   Index count() const noexcept { return count(0, beyond_.size()); }
 
  private:
-  static constexpr std::size_t period = 32;
+  static constexpr std::size_t period = 128;
 
   void examine(std::size_t batch, const M& material, const Tensor3<Lanes<S, N>>& f,
                const Lanes<S, N>& volume) noexcept {
