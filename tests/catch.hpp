@@ -10,6 +10,9 @@
 #include <catch2/matchers/catch_matchers_all.hpp>
 #else
 #include <catch2/catch.hpp>
+namespace Catch {
+using Detail::Approx;  // as in v3
+}
 #endif
 
 #include <string>

@@ -162,8 +162,8 @@ PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue
   return all > 0.0 ? behind / all : 0.0;
 }
 
-/// The strain follows from the force on a fine mesh. Where columns or contacts are missing the force is too small: all
-/// of the depth then counts as indentation.
+/// The strain follows from the force on a fine mesh. Where columns or rows are missing the force is too small: all of the
+/// depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
                                                      const ContactTool& tool, ForceError& error) const noexcept {
   const LinearModelError& model = surface.model_error();
@@ -183,9 +183,10 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
     sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
     sum += std::abs(c.force) + c.friction.norm();
   }
-  error.parts.linearity = error.force * linearity_error(sphere, model.body_size);
   error.parts.storage = model.storage * sum * sum / sphere.depth;
   error.parts.conditioning = model.conditioning * sum * sum / sphere.depth;
+  sphere.depth += shares_.deepest();  // points without rows sink in
+  error.parts.linearity = error.force * linearity_error(sphere, model.body_size);
 }
 
 /// A sphere without force may have entered a facet between contact points.
