@@ -11,7 +11,7 @@
 #else
 #include <catch2/catch.hpp>
 namespace Catch {
-using Detail::Approx;  // v2 has it in the global namespace only
+using Detail::Approx;  // as in v3
 }
 #endif
 

@@ -193,7 +193,8 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
   return own;
 }
 
-/// The strain follows from the force on a fine mesh.
+/// The strain follows from the force on a fine mesh. Where columns or rows are missing the force is too small: all of
+/// the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
                                                      const BodyContacts& contacts, std::size_t t,
                                                      SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
@@ -213,9 +214,10 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
     sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
     sum += std::abs(c.force) + c.friction.norm();
   }
-  parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
   parts.storage += model.storage * sum * sum / sphere.depth;
   parts.conditioning += model.conditioning * sum * sum / sphere.depth;
+  sphere.depth += shares_.deepest();  // points without rows sink in
+  parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
 /// The bounds add up. The expected error counts as far as it is along the force of the tool.

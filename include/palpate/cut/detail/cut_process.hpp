@@ -51,7 +51,7 @@ class CutProcess : public CutState<E> {
     const bool renewed = take_renewal(), caught_up = catch_up();
     if (taken.count == 0) return caught_up || check_next() || renewed;
     if (!before_) remember();
-    const long cuts = report_.cuts, changes = report_.changes;
+    const std::uint64_t cuts = report_.cuts, changes = report_.changes;
     has_new_compliance_ = false;
     detail::run_or_undo([&] { cut(taken, local); },
                         [&] {
