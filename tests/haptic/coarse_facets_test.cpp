@@ -6,6 +6,7 @@
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/element/smoothed.hpp>
 #include <palpate/mesh/where.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <algorithm>
@@ -268,4 +269,36 @@ TEST_CASE("a servo lists the facets that are too long for its smallest tool", "[
   CHECK_THAT(fine.coarse_facets().longest, WithinRel(cell, 1e-9));
   CHECK(fine.coarse_facets().radius == 0.5e-3);
   CHECK(HapticServo(block, SphereTool{.radius = 2.0 * cell}, Tip::options()).coarse_facets().triangles.empty());
+}
+
+TEST_CASE("a capsule is flagged where a sphere of its radius is", "[haptic][coarse]") {
+  int flagged = 0;
+  for (const auto& [cells, radius] : {std::pair{6, 6e-3}, {20, 14e-3}}) {
+    Scene scene;
+    scene.fix("z0").touch(where::box(Vector3(0.01, 0.01, 0.019), Vector3(0.03, 0.03, 0.021)), {.radius = radius});
+    SetupOptions options;
+    options.force_error = measured_force_error();
+    HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>> block(
+        box_tet4(Vector3(0.04, 0.04, 0.02), {cells, cells, cells / 2}), scene, tissue(0.45), options);
+    const auto press = [&, radius = radius](const ToolList& tool, double depth) {
+      HapticServo servo(block, tool, Tip::options());
+      ToolState state;
+      state.orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};  // along the x-axis
+      Status status;
+      for (int i = 0; i <= 100; ++i) {
+        state.time += 1e-3;
+        state.position = Vector3(0.0203, 0.0191, 0.02 + radius + 1e-4 - (1e-4 + depth) * i / 100.0);
+        status = servo.tick(state).status;
+      }
+      return status.has(StatusFlag::coarse_contact);
+    };
+    for (const double depth : {1e-3, 2e-3, 3e-3}) {
+      const bool is_flagged = press(SphereTool{.radius = radius}, depth);
+      CAPTURE(cells, depth);
+      CHECK(press(CapsuleTool(radius, 4e-3), depth) == is_flagged);
+      flagged += is_flagged;
+    }
+  }
+  CHECK(flagged > 0);
+  CHECK(flagged < 6);
 }

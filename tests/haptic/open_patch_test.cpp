@@ -6,6 +6,11 @@
 
 #include "catch.hpp"
 
+#include <palpate/mesh/where.hpp>
+
+#include <algorithm>
+#include <cmath>
+
 using namespace palpate;
 using test::pad_height;
 using test::ServoSession;
@@ -106,4 +111,43 @@ TEST_CASE("a group has the inside of its members, also after one has moved", "[c
   CHECK(largest_force(Vector3(0.055, 0.015, 0.036), Vector3(0.055, 0.015, 0.026)) == 0.0);  // now above it
   CHECK(largest_force(Vector3(0.055, 0.015, -0.04), Vector3(0.055, 0.015, -0.016)) == 0.0);
   CHECK(largest_force(Vector3(0.055, 0.015, 0.016), Vector3(0.055, 0.015, 0.012)) > 0.01);
+}
+
+TEST_CASE("where a tool over the rim of a patch lacks force, every tick is flagged", "[haptic][servo][patch]") {
+  // Cells of 1.5 mm; of the tops, all or a square of 18 mm can be touched.
+  const auto make = [](bool all) {
+    Scene scene;
+    scene.fix("z0");
+    if (all)
+      scene.touch("z1");
+    else
+      scene.touch(where::box(Vector3(5.9e-3, 5.9e-3, pad_height - 1e-6), Vector3(24.1e-3, 24.1e-3, pad_height + 1e-6)));
+    return test::Pad(box_tet4(Vector3(0.03, 0.03, pad_height), {20, 20, 8}, BoxSplit::six), scene,
+                     LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
+  };
+  test::Pad whole = make(true), patch = make(false);
+  const double radius = 4.5e-3;
+  const bool is_capsule = GENERATE(false, true);
+  for (const double depth : {0.3e-3, 1e-3})
+    for (double x = 1.0e-3; x <= 15e-3; x += 0.7e-3) {
+      const auto press = [&](test::Pad& pad) {
+        const ToolList tool = is_capsule ? ToolList(CapsuleTool(radius, 3e-3)) : ToolList(SphereTool{.radius = radius});
+        HapticServo servo(pad, tool, ServoOptions{.coupling_stiffness = infinity});
+        ToolState state;
+        state.orientation = {std::sqrt(0.5), std::sqrt(0.5), 0.0, 0.0};  // along the y-axis
+        Status status;
+        for (int i = 0; i <= 100; ++i) {
+          state.time += 1e-3;
+          state.position = Vector3(x, 0.0151, pad_height + radius + 1e-4 - (1e-4 + depth) * i / 100.0);
+          status = servo.tick(state).status;
+        }
+        return std::pair{servo.contact_force()[2], status};
+      };
+      const auto [truth, clean] = press(whole);
+      const auto [force, status] = press(patch);
+      CAPTURE(is_capsule, depth, x, truth, force);
+      CHECK_FALSE(clean.has(StatusFlag::lost_contact));  // an edge of the body is no rim
+      if (force < 0.8 * truth) CHECK(status.has(StatusFlag::lost_contact));
+      if (x > 11.5e-3) CHECK_FALSE(status.has(StatusFlag::lost_contact));
+    }
 }

@@ -55,11 +55,17 @@ class ContactProblem {
   /// The closest point of the touchable surface as the forces of the last tick deform it. `distance` [m] is that of the
   /// resting surface. Visits the triangles that the forces may have moved there; no allocation.
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;
-  /// What `solve` returned for all tools does not include this: coarse_contact of one tool.
-  Status status_of(std::size_t t, const ContactTool& tool) const noexcept { return local_.status(t, tool); }
+  /// What `solve` returned for all tools does not include this: coarse_contact of one tool. For the end of a tick,
+  /// after `force_error`.
+  Status status_of(std::size_t t, const ContactTool& tool) const noexcept {
+    return local_.status(t, tool) | (coarse_[t] ? Status(StatusFlag::coarse_contact) : Status());
+  }
   /// The share of a tool's contact force, 0 to 1, at points whose facets face away from it, at rest and deformed: they
   /// push it out of the body on the wrong side. Grasped points do not count. No allocation; O(contacts).
   double force_from_behind(const TissueView& tissue, std::size_t t) noexcept;
+  /// The share at points of the rim beyond which the body goes on and cannot be touched: of a tool over the rim, a part
+  /// of the force is missing. No allocation; O(contacts).
+  double force_on_rim(const TissueView& tissue, std::size_t t) const noexcept;
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
   double indentation(std::size_t t, const ContactTool& tool) const noexcept;
   /// Estimated error of the force of a tool in the last tick: from the mesh, as measured at set-up, from the linear
@@ -93,6 +99,7 @@ class ContactProblem {
   static constexpr int most_corrections = 3;             // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;     // where more is estimated, another linearisation follows
   static constexpr double violation = 1e-5;              // allowed penetration, relative to the deepest push
+  static constexpr double coarse_error = 0.1;            // of a force, that is flagged
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
@@ -116,6 +123,8 @@ class ContactProblem {
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
   void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
                   const ContactTool& tool, ForceError& error) const noexcept;
+  bool is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
+                            std::size_t t, const ContactTool& tool) const noexcept;
   void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
                         std::size_t t, SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
   inline void note_pressing(Candidate& c) noexcept;
@@ -137,6 +146,7 @@ class ContactProblem {
   std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
+  std::array<bool, maximum_tools> coarse_{};      // tools other than spheres on facets too coarse for a sphere
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;

@@ -148,6 +148,21 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
   return shares_.deepest() > 0.0 ? shares_.deepest() / std::max(shares_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
+PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std::size_t t) const noexcept {
+  const ContactSurface& surface = tissue.contact_surface();
+  if (!surface.has_shell()) return 0.0;
+  double all = 0.0, on_rim = 0.0;
+  for (const Contact& c : rows_.contacts()) {
+    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+    all += c.force;
+    bool is_on_rim = true;
+    for (std::size_t a = 0; a < 3; ++a)
+      is_on_rim = is_on_rim && (c.weights[a] == 0.0 || surface.goes_on(c.vertices[a], c.normal));
+    if (is_on_rim) on_rim += c.force;
+  }
+  return all > 0.0 ? on_rim / all : 0.0;
+}
+
 /// Mean depth of contacts with that force and push work, weighted with their forces, without the coupling.
 PALPATE_INLINE double ContactProblem::depth_of(double work, double scale, const Vector3& force,
                                                const ContactTool& tool) const noexcept {
@@ -220,6 +235,23 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
+/// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
+/// large, theirs is: its force there is that on a half-space.
+PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body,
+                                                         const BodyContacts& contacts, std::size_t t,
+                                                         const ContactTool& tool) const noexcept {
+  if (body.accuracy == nullptr || !(tool.half_length > 0.0) || contacts.rows.empty()) return false;
+  const int vertex = body.first + contacts.rows.front().vertices[0];
+  const double modulus = surface.material(surface.triangles_at(vertex).front()).modulus;
+  const double depth = std::min(contacts.depth, tool.radius),
+               force = 4.0 / 3.0 * modulus * std::sqrt(tool.radius * depth) * depth;
+  ContactTool sphere = tool;
+  sphere.half_length = sphere.local_compliance = 0.0;
+  sphere.force = Vector3(0.0, 0.0, force);
+  const double bound = body.accuracy->error(sphere, static_cast<int>(t), contacts.rows, depth).bound;
+  return bound > coarse_error * force && bound < infinity;
+}
+
 /// The bounds add up. The expected error counts as far as it is along the force of the tool.
 PALPATE_INLINE void ContactProblem::add_errors(const ContactSurface& surface, const KnownErrors& body,
                                                const BodyContacts& contacts, std::size_t t, const ContactTool& tool,
@@ -257,6 +289,7 @@ PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& 
 
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) noexcept {
+  coarse_[t] = false;
   if (!tool.active || !candidates_.has_any(static_cast<int>(t))) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
   const double force = tool.force.norm();
@@ -269,6 +302,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
     const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
     if (!(contacts.scale > 0.0)) continue;
     pressed = true;
+    coarse_[t] = coarse_[t] || is_coarse_for_sphere(surface, body, contacts, t, tool);
     add_errors(surface, body, contacts, t, tool, error);
   }
   if (!pressed) error.parts.mesh = infinity;
@@ -301,6 +335,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   local_.reset();
   shares_.reset();
   proxies_ = {};
+  coarse_.fill(false);
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;

@@ -132,6 +132,9 @@ class ContactSurface {
   bool is_rim(int t, TriangleFeature feature) const noexcept;
   /// Whether a vertex is on the rim of the touchable surface.
   bool is_rim_vertex(int v) const noexcept { return vertex_kind_[static_cast<std::size_t>(v)] == VertexKind::rim; }
+  /// Whether the shell goes on at a vertex of the rim, with a facet within 60 degrees of a unit direction: a tool there
+  /// would press facets that it cannot touch.
+  bool goes_on(int v, const Vector3& direction) const noexcept;
 
  private:
   inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;

@@ -205,6 +205,15 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest_of_body(const Vec
   return own;
 }
 
+PALPATE_INLINE bool ContactSurface::goes_on(int v, const Vector3& direction) const noexcept {
+  if (body_.empty() || !is_rim_vertex(v)) return false;
+  const ContactSurface& body = body_.front();
+  const auto around = body.triangles_at(v);
+  return std::any_of(around.begin(), around.end(), [&](int t) {
+    return t >= static_cast<int>(triangles_.size()) && body.normal(t).dot(direction) > 0.5;
+  });
+}
+
 PALPATE_INLINE double ContactSurface::distance_of_body(const Vector3& p) const noexcept {
   return body_.empty() ? closest(p).distance : body_.front().closest(p).distance;
 }

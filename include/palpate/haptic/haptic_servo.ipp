@@ -193,25 +193,31 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
     blade.lift();
 }
 
-/// Whether the proxy of a tool is inside the body without any contact, and got there through the touchable surface. A
+/// Notes whether a tool without force overlaps a part of the body that cannot be touched, and returns whether its proxy
+/// is inside the body without any contact, and got there through the touchable surface. A
 /// tool that entered elsewhere passes until it is outside again.
 PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
   ToolInput& input = inputs_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return false;
   const ContactSurface& surface = tissue_.contact_surface();
+  input.set_beside_surface(false);
   if (input.is_clear(surface.revision(), tool.proxy)) return false;
-  bool inside = false, behind = false;
+  bool inside = false, behind = false, beside = false;
   double least = infinity;
   for_each_probe(tool, [&](const Vector3& probe) {
     const Vector3 centre = tool.half_length > 0.0 ? tool.proxy + tool.rotation * probe : tool.proxy;
     const double distance = surface.distance_of_body(centre);
     least = std::min(least, distance);
+    beside = beside || (surface.has_shell() && distance < (1.0 - 1e-3) * tool.radius &&
+                        surface.closest_of_body(centre).triangle < 0);
     if (!(distance < 0.0) || is_free(centre, -distance)) return;
     inside = true;
     behind = behind || surface.closest_of_body(centre).triangle >= 0;
   });
-  input.set_clearance(surface.revision(), tool.proxy, surface.is_closed() ? least - 2.0 * tool.half_length : 0.0);
+  input.set_beside_surface(beside);
+  const double reach = 2.0 * tool.half_length + (surface.has_shell() ? tool.radius : 0.0);
+  input.set_clearance(surface.revision(), tool.proxy, surface.is_closed() ? least - reach : 0.0);
   const bool lost = inside && behind && !input.is_passing();
   if (!lost) input.set_passing(inside);
   return lost;
@@ -268,14 +274,17 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
     inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
 }
 
-/// Whether a tool is inside the body without a force, or is pushed by facets that it has passed. Remains true until no
-/// such facet pushes and the tool is outside the deformed body. Call it at the end of a tick, after `recover`.
+/// Whether a tool is inside the body or beside what can be touched of it without a force, is pushed by facets that it
+/// has passed, or presses beyond the rim. Remains true until no such facet pushes and the tool is outside the deformed
+/// body. Call it at the end of a tick, after `recover`.
 PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
-  constexpr double most_from_behind = 0.1;
+  constexpr double most_from_behind = 0.1, most_on_rim = 0.5;
   const ContactTool& tool = contact_tools_[i];
   if (!tool.active) return false;
-  if (detail::is_zero(tool.force)) return inputs_[i].is_passing() || inputs_[i].is_lost();
+  if (detail::is_zero(tool.force))
+    return inputs_[i].is_passing() || inputs_[i].is_lost() || inputs_[i].is_beside_surface();
   if (problem_.force_from_behind(tissue_, i) > most_from_behind) return true;
+  if (problem_.force_on_rim(tissue_, i) > most_on_rim) return true;
   if (!lost_contact_[i]) return false;
   const double distance = tissue_.contact_surface().distance_of_body(tool.proxy);
   return distance < 0.0 && !is_free(tool.proxy, -distance);

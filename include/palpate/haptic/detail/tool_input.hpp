@@ -60,6 +60,9 @@ class ToolInput {
   /// Whether the tool is inside the body because it entered through an untouchable surface.
   bool is_passing() const noexcept { return passing_; }
   void set_passing(bool passing) noexcept { passing_ = passing; }
+  /// Whether the tool overlaps a part of the body that cannot be touched.
+  bool is_beside_surface() const noexcept { return beside_surface_; }
+  void set_beside_surface(bool beside) noexcept { beside_surface_ = beside; }
   Status status() const noexcept { return status_; }
 
   /// Whether a position is closer to that of the last query than the surface was; `revision` is the surface's.
@@ -99,7 +102,7 @@ class ToolInput {
   double news_ = 0.0;       // time of the last update of the tissue
   bool known_ = false;      // position_ is valid
   bool has_proxy_ = false;  // while not known_: the proxy is that of the last reading
-  bool passing_ = false;
+  bool passing_ = false, beside_surface_ = false;
   std::uint64_t clear_revision_ = 0;
   Vector3 clear_position_ = Vector3::Zero();
   double clearance_ = 0.0;    // [m]; not positive: none
