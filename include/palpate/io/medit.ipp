@@ -32,7 +32,7 @@ class Parser {
 
   Source source_;
   FileMesh mesh_;
-  bool has_dimension_ = false, has_vertices_ = false, is_bezier_ = false;
+  bool has_dimension_ = false, has_vertices_ = false;
   std::vector<int> references_;  ///< of the vertices
   std::array<Index, sections.size()> last_cell_{};
   TagSets sets_;
