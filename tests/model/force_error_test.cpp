@@ -160,9 +160,9 @@ TEST_CASE("an error is not measured on supports, though they can be touched", "[
     CHECK(std::abs(press.force - truth) <= press.error.bound);
     CHECK(press.status.has(StatusFlag::coarse_contact));
   }
-  Scene supported;
-  supported.fix("z0").touch("z0", {.radius = radius});
-  HapticFEModel<Tet4, LinearElastic> wholly(block_with_cells(8), supported.traction("z1", {0.0, 0.0, 1.0}), soft_material(),
+  Scene base;
+  base.fix("z0").touch("z0", {.radius = radius});
+  HapticFEModel<Tet4, LinearElastic> wholly(block_with_cells(8), base.traction("z1", {0.0, 0.0, 1.0}), soft_material(),
                                             {.force_error = measured_force_error()});
   CHECK(wholly.report().accuracy.places == 0);
   CHECK(wholly.report().accuracy.remark.find("supports") != std::string::npos);

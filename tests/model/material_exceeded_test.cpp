@@ -75,6 +75,12 @@ TEST_CASE("an equilibrium beyond the stress limit of its material is reported", 
     }
     const EquilibriumReport beyond = compressed(law, limit - 0.03);
     CHECK(beyond.deformation.beyond_range == 1);
+    for (const double stretch : {0.5, 0.45, 0.4, 0.35, 0.3, 0.2})
+      if (stretch < limit - 0.01) {  // also where the cube has collapsed to a line
+        const DeformationReport collapsed = compressed(law, stretch).deformation;
+        CAPTURE(stretch, collapsed.smallest_volume_ratio);
+        CHECK((collapsed.beyond_range > 0 || collapsed.inverted > 0));
+      }
     CHECK(describe(beyond).find(beyond.converged ? "beyond the range" : "no equilibrium") != std::string::npos);
     CHECK(compressed(NeoHookeanLogarithmic{4e3, nu, 1e3}, limit - 0.03).deformation.beyond_range == 0);
   }

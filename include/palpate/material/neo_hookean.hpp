@@ -57,7 +57,8 @@ struct NeoHookean {
   /// Whether F is compressed so far that the material does not resist any more (docs/materials.md). With c = mu -
   /// (lambda + mu) (J - 1), the second derivative of W by the logarithms of the stretches, under constant nominal
   /// stress, is sum of (mu stretch_i^2 + c J) y_i^2 + b (sum of y_i)^2, b = J ((lambda + mu) (2 J - 1) - mu): positive
-  /// definite while 1 + b sum of 1 / (mu stretch_i^2 + c J) > 0. The material is strongly elliptic everywhere.
+  /// definite while 1 + b sum of 1 / (mu stretch_i^2 + c J) > 0. Or so far that it has collapsed: to less than half of
+  /// its volume, with a mean stress that is a tension. The material is strongly elliptic everywhere.
   bool is_beyond_range(const Tensor3<double>& f) const noexcept;
   /// No F with a larger J is beyond the range: c J bounds the terms of that sum.
   double range_volume_ratio() const noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/material/neo_hookean.hpp>
+#include <palpate/material/detail/material_range.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -25,7 +26,9 @@ PALPATE_INLINE bool NeoHookean::is_beyond_range(const Tensor3<double>& f) const 
   const double j = determinant(f, c), stiffness = lambda + mu;
   if (!(j > 0.0 && j < range_volume_ratio())) return false;
   const double x = j * (mu - stiffness * (j - 1.0)), b = j * (stiffness * (2.0 * j - 1.0) - mu);
-  const double first = mu * contract(f, f), second = mu * mu * contract(c, c);
+  const double first = mu * contract(f, f);
+  if (j < detail::collapsed_volume && first > 3.0 * x) return true;  // P : F = mu |F|^2 - 3 c J
+  const double second = mu * mu * contract(c, c);
   const double product = ((x + first) * x + second) * x + mu * mu * mu * j * j;
   return product + b * ((3.0 * x + 2.0 * first) * x + second) <= 0.0;
 }

@@ -47,9 +47,6 @@ struct StVenantKirchhoff {
   Matrix9 tangent(const Tensor3<double>& f) const noexcept;
 
   bool admits(const Tensor3<double>& f) const noexcept { return detail::has_volume(f); }
-  /// Clearly deformed and not stable, as a bar compressed below 58 % of its length; or pulled (by the mean stress) and
-  /// yet shrunk to half of its volume.
-  bool is_beyond_range(const Tensor3<double>& f) const noexcept;
 
  private:
   /// E = sym h + h^T h / 2 with h = F - I.

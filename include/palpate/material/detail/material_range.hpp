@@ -22,17 +22,21 @@ bool is_stable(const Tensor3<double>& f, const Matrix9& tangent) noexcept;
 /// The square of |F^T F - I| below which no material is examined: one stretch of 0.71 or 1.22.
 inline constexpr double examined_strain = 0.25;
 
+/// The volume ratio below which a state is collapsed if its mean stress is a tension. Beyond its limit a law without a
+/// barrier may be stable again, in a line or a point.
+inline constexpr double collapsed_volume = 0.5;
+
+// clang-format off
 /// A material that knows the range in which it is valid, and that no J above `range_volume_ratio()` is beyond it.
 template <class M>
 concept RangedByVolume = requires(const M& m, const Tensor3<double>& f) {
-  { m.range_volume_ratio() }
-  noexcept->std::same_as<double>;
-  { m.is_beyond_range(f) }
-  noexcept->std::same_as<bool>;
+  { m.range_volume_ratio() } noexcept -> std::same_as<double>;
+  { m.is_beyond_range(f) } noexcept -> std::same_as<bool>;
 };
+// clang-format on
 
 /// Whether F is beyond the range of a material: its own `is_beyond_range(F)`, or where it has none, whether F is
-/// clearly deformed and the material not stable there. False for deformations that the material does not admit or that
+/// clearly deformed, and collapsed or not stable. False for deformations that the material does not admit or that
 /// are inverted, which are reported as such.
 template <class M>
 bool is_beyond_range(const M& material, const Tensor3<double>& f) noexcept {
@@ -41,7 +45,10 @@ bool is_beyond_range(const M& material, const Tensor3<double>& f) noexcept {
   } else {
     const Tensor3<double> strain = plus_identity(transpose_product(f, f), -1.0);
     if (!(contract(strain, strain) > examined_strain)) return false;
-    return determinant(f) > 0.0 && material.admits(f) && !is_stable(f, material.tangent(f));
+    const double j = determinant(f);
+    if (!(j > 0.0 && material.admits(f))) return false;
+    if (j < collapsed_volume && contract(material.stress(f), f) > 0.0) return true;
+    return !is_stable(f, material.tangent(f));
   }
 }
 

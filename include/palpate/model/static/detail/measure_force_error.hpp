@@ -59,7 +59,7 @@ class ForceErrorMeasurement {
     std::array<std::optional<Spot>, MissingDepth::positions> opposite;
   };
 
-  bool is_held(int vertex) const;
+  bool is_supported(int vertex) const;
   Vector3 outward_at(int vertex) const;
   std::vector<int> inner_vertices() const;
   void choose_places();

@@ -42,15 +42,15 @@ PALPATE_INLINE Vector3 ForceErrorMeasurement::outward_at(int vertex) const {
   return sum.normalized();
 }
 
-/// Whether a support holds a vertex against a press: a force on it shows nothing of the tissue.
-PALPATE_INLINE bool ForceErrorMeasurement::is_held(int vertex) const {
+/// Whether a vertex is supported against a press: a force on it shows nothing of the tissue.
+PALPATE_INLINE bool ForceErrorMeasurement::is_supported(int vertex) const {
   constexpr double most = 0.1;  // square of the part of the normal that is constrained
   const Vector3 outward = outward_at(vertex);
   const Index dof = 3 * Index{source_.nodes[static_cast<std::size_t>(vertex)]};
-  double held = 0.0;
+  double constrained = 0.0;
   for (int c = 0; c < 3; ++c)
-    if (source_.conditions.is_constrained(dof + c)) held += outward[c] * outward[c];
-  return held > most;
+    if (source_.conditions.is_constrained(dof + c)) constrained += outward[c] * outward[c];
+  return constrained > most;
 }
 
 /// Vertices away from the rim, and from supports on the same side of the body, by more than a radius and a facet. On a
@@ -64,7 +64,7 @@ PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
   for (int v = 0; v < surface.vertex_count(); ++v) {
     if (surface.triangles_at(v).empty()) continue;
     if (surface.is_rim_vertex(v)) rim.push_back({surface.position(v), Vector3::Zero()});
-    if (is_held(v)) rim.push_back({surface.position(v), outward_at(v)});
+    if (is_supported(v)) rim.push_back({surface.position(v), outward_at(v)});
   }
   std::vector<int> inner, nearer;
   int farthest = -1;
@@ -161,7 +161,8 @@ PALPATE_INLINE std::optional<ForceErrorMeasurement::Spot> ForceErrorMeasurement:
   }
   const auto position = [&](int v) -> Vector3 { return surface.position(v); };
   if (spot && point_at(*spot, position).outward.dot(point.outward) > -least_cosine) spot.reset();
-  if (spot && std::ranges::any_of(surface.triangle(spot->triangle), [&](int v) { return is_held(v); })) spot.reset();
+  if (spot && std::ranges::any_of(surface.triangle(spot->triangle), [&](int v) { return is_supported(v); }))
+    spot.reset();
   return spot;
 }
 
