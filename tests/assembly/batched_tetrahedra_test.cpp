@@ -9,6 +9,8 @@
 
 #include "assembly/bodies.hpp"
 
+#include <numeric>
+
 using namespace test;
 
 namespace {

@@ -10,6 +10,8 @@
 #include "assembly/csv.hpp"
 #include "linear/systems.hpp"
 
+#include <numeric>
+
 using namespace test;
 
 namespace {

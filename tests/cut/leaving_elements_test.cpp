@@ -16,6 +16,8 @@
 #include "catch.hpp"
 #include "refused.hpp"
 
+#include <numeric>
+
 using namespace palpate;
 
 namespace {

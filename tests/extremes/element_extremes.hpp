@@ -2,6 +2,8 @@
 
 #include "properties/element_cases.hpp"
 
+#include <numeric>
+
 /// Extremes of material and mesh for any element, compared with fields whose nodal values are known. Each element is
 /// compiled in its own file.
 namespace test {

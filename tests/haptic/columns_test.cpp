@@ -5,6 +5,7 @@
 
 #include "catch.hpp"
 
+#include <numeric>
 #include <thread>
 
 using namespace palpate;

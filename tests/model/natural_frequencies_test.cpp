@@ -8,6 +8,8 @@
 
 #include "assembly/bodies.hpp"
 
+#include <numeric>
+
 using namespace test;
 using Catch::Matchers::WithinRel;
 

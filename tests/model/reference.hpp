@@ -6,6 +6,8 @@
 #include "assembly/bodies.hpp"
 #include "local/closed_form.hpp"
 
+#include <numeric>
+
 namespace test {
 
 /// Statics of a small body in long double: stiffness by closed form, dense Cholesky, no condensation.

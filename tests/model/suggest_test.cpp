@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 using namespace palpate;
 
@@ -40,10 +42,10 @@ const Suggestion& suggest_once() {
   return made;
 }
 
-const SuggestedModel& find_suggested(const Suggestion& s, const std::string& element, bool refined) {
+const SuggestedModel& find_suggested(const Suggestion& s, std::string_view element, bool refined) {
   for (const SuggestedModel& m : s.candidates)
     if (m.element == element && (m.edge > 0.0) == refined) return m;
-  FAIL("there is no candidate " + element);
+  FAIL("there is no candidate " + std::string(element));
   return s.candidates.front();
 }
 

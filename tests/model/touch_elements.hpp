@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+#include <numeric>
+
 /// A block of any element under a sphere, defined once; each element is compiled in a separate file.
 namespace test {
 

@@ -5,6 +5,8 @@
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 
+#include <numeric>
+
 using namespace test;
 
 namespace {
