@@ -5,6 +5,8 @@
 #include "catch.hpp"
 #include "refused.hpp"
 
+#include <cmath>
+
 using namespace palpate;
 
 namespace {
@@ -28,6 +30,9 @@ struct RosenbrockPairs {
   double scale() const noexcept { return 100.0; }
   double rounding() const noexcept { return 1e-13; }
   double potential_rounding() const noexcept { return 1e-15; }
+  double energy_scale() const noexcept { return 1.0; }
+  double energy_rounding() const noexcept { return 1e-30; }
+  bool is_uneven() const noexcept { return false; }
   double factor = 200.0;
 };
 
@@ -41,8 +46,13 @@ struct FactorisedQuadratic {
   }
   void precondition(const VectorX& r, VectorX& d) noexcept { d = r.cwiseQuotient(a.diagonal()); }
   double scale() const noexcept { return 1.0; }
-  double rounding() const noexcept { return 1e-14; }
+  double rounding() const noexcept { return floor; }
   double potential_rounding() const noexcept { return 1e-14; }
+  double energy_scale() const noexcept { return 1.0; }
+  double energy_rounding() const noexcept { return floor * floor; }
+  bool is_uneven() const noexcept { return uneven; }
+  double floor = 1e-14;
+  bool uneven = false;
 };
 
 }  // namespace
@@ -89,6 +99,28 @@ TEST_CASE("a step out of the domain is shortened", "[integrator][quasi_newton]")
   CHECK(report.converged);
   CHECK(method.potential() < before);
   CHECK((x - VectorX::Ones(2)).norm() < 1e-6);
+}
+
+TEST_CASE("a residual in soft directions only is seen by its energy", "[integrator][quasi_newton]") {
+  FactorisedQuadratic problem;
+  problem.a = Eigen::Vector3d(1e-6, 10.0, 100.0).asDiagonal();
+  problem.b = VectorX::Unit(3, 0) * 1e-6;  // moves x_0 by 1
+  QuasiNewtonMethod method(3);
+  const auto solved = [&] {
+    VectorX x = VectorX::Zero(3);
+    method.start(problem, x);
+    const QuasiNewtonReport report = method.solve(problem, x, {.tolerance = 1e-4});
+    CHECK(report.converged);
+    return x[0];
+  };
+  CHECK(solved() == 0.0);  // the norm of the residual is below the tolerance
+  problem.uneven = true;
+  CHECK(std::abs(solved() - 1.0) < 1e-9);
+  problem.uneven = false;
+  problem.floor = 1e-5;  // above the norm of the residual, but not above its energy
+  CHECK(std::abs(solved() - 1.0) < 1e-9);
+  problem.floor = 1e-2;
+  CHECK(solved() == 0.0);
 }
 
 TEST_CASE("a limit on iterations ends with the best state", "[integrator][quasi_newton]") {

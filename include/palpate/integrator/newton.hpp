@@ -22,7 +22,7 @@ struct NewtonReport {
   bool converged = false;
   int iterations = 0;  ///< factorisations
   int halvings = 0;
-  double relative_residual = infinity;
+  double relative_residual = infinity;  ///< of the force; where iterations end early also of the energy, if larger
 };
 
 /// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1). Near the
@@ -45,15 +45,30 @@ class NewtonMethod {
       report.relative_residual = norm > 0.0 ? norm / problem.scale() : 0.0;
       report.converged =
           norm < infinity && (report.relative_residual <= parameters_.tolerance || norm <= problem.rounding());
-      if (report.converged || report.iterations == parameters_.maximum_iterations) return report;
+      if (report.converged) return report;
+      if (report.iterations == parameters_.maximum_iterations) {
+        problem.direction(residual_, step_);
+        weigh_by_energy(problem, report);
+        return report;
+      }
       if (!problem.prepare(x)) return report;
       ++report.iterations;
       problem.direction(residual_, step_);
-      if (!(residual_.dot(step_) > 0.0) || !search(problem, x, potential, norm, report)) return report;
+      if (residual_.dot(step_) > 0.0 && search(problem, x, potential, norm, report)) continue;
+      weigh_by_energy(problem, report);
+      return report;
     }
   }
 
  private:
+  /// Where stiffness varies, forces in stiff parts make the residual of soft ones look small; its energy does not.
+  template <NewtonProblem P>
+  void weigh_by_energy(P& problem, NewtonReport& report) noexcept {
+    if constexpr (requires { problem.energy_scale(); }) {
+      const double relative = std::sqrt(residual_.dot(step_) / problem.energy_scale());
+      if (relative > report.relative_residual) report.relative_residual = relative;
+    }
+  }
   template <NewtonProblem P>
   bool search(P& problem, VectorX& x, double& potential, double norm, NewtonReport& report) noexcept {
     const double slope = residual_.dot(step_);

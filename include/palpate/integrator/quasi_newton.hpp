@@ -20,7 +20,7 @@ struct QuasiNewtonLimits {
 
 struct QuasiNewtonReport {
   bool converged = false;
-  int iterations = 0;   ///< solves with the factor
+  int iterations = 0;   ///< steps tried
   int evaluations = 0;  ///< of energy and force
   double relative_residual = infinity;
 };
@@ -29,6 +29,9 @@ struct QuasiNewtonReport {
 /// - `evaluate(x, residual)`, `scale()`, `rounding()` as in NewtonProblem.
 /// - `precondition(r, d)`: d = H r with a positive definite H, near the inverse of the second derivative.
 /// - `potential_rounding()` is the error of the last potential that is due to rounding alone.
+/// - `energy_scale()` is the size of the terms of the last potential, `energy_rounding()` the energy r.Hr of a residual
+///   that is due to rounding alone.
+/// - `is_uneven()`: the norm of the residual, dominated by stiff parts, may hide that soft ones are out of equilibrium.
 template <class P>
 concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   { p.evaluate(x, y) }
@@ -41,6 +44,12 @@ concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   noexcept->std::convertible_to<double>;
   { p.potential_rounding() }
   noexcept->std::convertible_to<double>;
+  { p.energy_scale() }
+  noexcept->std::convertible_to<double>;
+  { p.energy_rounding() }
+  noexcept->std::convertible_to<double>;
+  { p.is_uneven() }
+  noexcept->std::convertible_to<bool>;
 };
 
 /// Limited-memory BFGS with H as the initial inverse (Nocedal and Wright, Numerical Optimization, 7.2; with a factor as
@@ -85,10 +94,13 @@ class QuasiNewtonMethod {
  private:
   template <class P>
   void find_direction(P& problem, const VectorX& r, VectorX& d) noexcept;
+  /// The direction of the next step from the residual. Returns their product: energy of the residual, as far as known.
+  template <class P>
+  double find_direction(P& problem) noexcept;
   template <class P>
   bool search(P& problem, VectorX& x, double slope, QuasiNewtonReport& report) noexcept;
-  /// Stores the change of x and of the residual, unless the curvature is not positive.
-  void remember(const VectorX& from, const VectorX& to, const VectorX& residual_there) noexcept;
+  /// Stores the change of x and of the residual, unless the curvature is not positive, or their product below `least`.
+  void remember(const VectorX& from, const VectorX& to, const VectorX& residual_there, double least) noexcept;
   Index newest(int back) const noexcept { return (next_ + memory_ - 1 - back) % memory_; }
 
   Index memory_ = 0, count_ = 0, next_ = 0;
@@ -102,30 +114,56 @@ template <QuasiNewtonProblem P>
 QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept {
   QuasiNewtonReport report;
   if (!(potential_ < infinity)) return report;
-  double start = 0.0;
+  double start = infinity, energy_start = infinity;
+  // Small enough, as force or as energy? `start` is the first of them.
+  const auto is_small = [&](double relative, double& first) noexcept {
+    if (first == infinity) first = relative;
+    return relative <= std::min(limits.tolerance, std::max(limits.reduction * first, limits.enough * limits.tolerance));
+  };
   for (;;) {
     const double norm = residual_.norm();
-    report.relative_residual = norm <= problem.rounding() ? 0.0 : norm / problem.scale();
-    if (report.iterations == 0) start = report.relative_residual;
-    const double wanted = std::max(limits.reduction * start, limits.enough * limits.tolerance);
-    report.converged = report.relative_residual <= std::min(limits.tolerance, wanted);
-    if (report.converged || report.iterations >= limits.maximum_iterations ||
-        report.evaluations >= limits.maximum_evaluations || !iterate(problem, x, report))
+    const bool lost = norm <= problem.rounding();
+    report.relative_residual = lost ? 0.0 : norm / problem.scale();
+    report.converged = is_small(report.relative_residual, start);
+    const bool by_energy = lost || problem.is_uneven();
+    const bool ends =
+        report.iterations >= limits.maximum_iterations || report.evaluations >= limits.maximum_evaluations;
+    if ((report.converged || ends) && !by_energy) return report;
+    const double work = find_direction(problem);
+    if (!(work > problem.energy_rounding())) {
+      report.converged = work >= 0.0;
+      if (report.converged) report.relative_residual = 0.0;
       return report;
+    }
+    const double relative = std::sqrt(work / problem.energy_scale());
+    const bool is_small_energy = is_small(relative, energy_start);
+    if (by_energy) {
+      report.converged = report.converged && is_small_energy;
+      report.relative_residual = std::max(report.relative_residual, relative);
+    }
+    if (report.converged || ends) return report;
+    ++report.iterations;
+    if (!(work < infinity) || !search(problem, x, work, report)) return report;
   }
 }
 
 template <QuasiNewtonProblem P>
 bool QuasiNewtonMethod::iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept {
-  find_direction(problem, residual_, direction_);
+  const double work = find_direction(problem);
   ++report.iterations;
-  double slope = residual_.dot(direction_);
-  if (!(slope > 0.0) && count_ > 0) {  // stale pairs
+  return work > 0.0 && work < infinity && search(problem, x, work, report);
+}
+
+template <class P>
+double QuasiNewtonMethod::find_direction(P& problem) noexcept {
+  find_direction(problem, residual_, direction_);
+  double work = residual_.dot(direction_);
+  if (!(work > 0.0) && count_ > 0) {  // stale pairs
     forget();
     find_direction(problem, residual_, direction_);
-    slope = residual_.dot(direction_);
+    work = residual_.dot(direction_);
   }
-  return slope > 0.0 && slope < infinity && search(problem, x, slope, report);
+  return work;
 }
 
 template <class P>
@@ -158,7 +196,7 @@ bool QuasiNewtonMethod::search(P& problem, VectorX& x, double slope, QuasiNewton
     const bool level =
         next <= potential_ + problem.potential_rounding() && trial_residual_.dot(direction_) >= -0.8 * slope;
     if (lower || level) {
-      remember(x, trial_, trial_residual_);
+      remember(x, trial_, trial_residual_, problem.energy_rounding());
       x.swap(trial_);
       residual_.swap(trial_residual_);
       potential_ = next;

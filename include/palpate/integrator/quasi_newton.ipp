@@ -19,12 +19,12 @@ PALPATE_INLINE QuasiNewtonMethod::QuasiNewtonMethod(Index size, int memory)
 }
 
 PALPATE_INLINE void QuasiNewtonMethod::remember(const VectorX& from, const VectorX& to,
-                                                const VectorX& residual_there) noexcept {
+                                                const VectorX& residual_there, double least) noexcept {
   auto step = steps_.col(next_), change = changes_.col(next_);
   step = to - from;
   change = residual_ - residual_there;
   const double product = step.dot(change);
-  if (!(product > 1e-8 * step.norm() * change.norm())) return;
+  if (!(product > least) || !(product > 1e-8 * step.norm() * change.norm())) return;
   curvature_[next_] = 1.0 / product;
   next_ = (next_ + 1) % memory_;
   count_ = std::min(count_ + 1, memory_);

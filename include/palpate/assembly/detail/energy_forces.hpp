@@ -12,9 +12,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Parts of a computed energy [J] and of the norm of computed forces [N] that are due to rounding.
+/// Parts of a computed energy [J] and of the norm of computed forces f [N] that are due to rounding; with the inverse H
+/// of a step also of their energy f.Hf [J] and displacement Hf [m].
 struct RoundingErrors {
-  double energy = 0.0, force = 0.0;
+  double energy = 0.0, force = 0.0, work = 0.0, displacement = 0.0;
 };
 
 /// Energy and force of a body at a displacement u, all dofs, 3 per node [m], in one call. Virtual, so that code that
@@ -28,8 +29,9 @@ class EnergyForces {
   virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
-  /// Measured: energy and forces of the body rotated as a whole. Nodes at `positions` [m]. Allocates.
-  virtual RoundingErrors rounding_errors(const std::vector<Vector3>& positions);
+  /// Energy [J] and forces f [N] of the body rotated as a whole, by u [m]: all of it is due to rounding. Nodes at
+  /// `positions` [m].
+  virtual double evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept;
 
   /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.
   virtual bool has_history() const noexcept { return false; }

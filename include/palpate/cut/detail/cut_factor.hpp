@@ -40,6 +40,7 @@ class CutFactor final : public StepFactor {
   bool set_mass(double mass) noexcept override;
   void rotate(const VectorX& u) noexcept override;
   void solve(const VectorX& r, VectorX& z) noexcept override;
+  bool is_uneven() const noexcept override { return base_->is_uneven(); }
   void take_renewed() noexcept override;
   long renewals() const noexcept override { return renewals_; }
 

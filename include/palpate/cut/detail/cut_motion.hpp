@@ -52,7 +52,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
         mass[static_cast<std::size_t>(a)] = body_.rest.density[body_.rest.region_of(e)] * volumes[a];
     }
     restart(topology);
-    if (parameters_.settle) motion_->settle();
+    motion_->begin();
     limits_.threads = 1;  // beside a haptic loop from here on
   }
 

@@ -14,8 +14,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 class NodalRotations {
  public:
   NodalRotations() = default;
-  /// `positions` at rest [m].
-  NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions, const std::vector<NodeId>& nodes);
+  /// `positions` at rest [m]. With a stiffness, neighbours count by the stiffness between both nodes: on the interface
+  /// of a stiff and a soft part a node then rotates with the stiff one.
+  NodalRotations(const BlockPattern& pattern, const std::vector<Vector3>& positions, const std::vector<NodeId>& nodes,
+                 const BlockMatrix* stiffness = nullptr);
 
   /// Rotation at the k-th chosen node under a displacement u with 3 entries per node [m].
   Matrix3 operator()(std::size_t k, const VectorX& u) const noexcept;
@@ -25,7 +27,7 @@ class NodalRotations {
   std::vector<Matrix3> inverse_;
   std::vector<std::size_t> first_;
   std::vector<NodeId> neighbour_;
-  std::vector<Vector3> offset_;
+  std::vector<Vector3> offset_, weighted_;  // the latter empty where all neighbours count alike
 };
 
 }}  // namespace palpate

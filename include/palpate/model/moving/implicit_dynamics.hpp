@@ -92,6 +92,7 @@ class ImplicitDynamics {
   void direction(const VectorX& residual, VectorX& d) noexcept { tangent_.solve(residual, d); }
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept;
+  double energy_scale() const noexcept { return energy_scale_; }
 
  private:
   /// Starts a step of length h at the end of the last step.
@@ -142,7 +143,7 @@ class ImplicitDynamics {
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of step_
   bool factorised_ = false;  // tangent_ is that of this step
-  double time_ = 0.0, scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
+  double time_ = 0.0, scale_ = 0.0, energy_scale_ = 0.0, heaviest_ = 0.0, floor_ = 0.0;
   double small_ = 0.0;  // displacement that rounding may cause [m]
   struct Work {
     double of_loads = 0.0, most = 0.0;  // so far, and its largest magnitude

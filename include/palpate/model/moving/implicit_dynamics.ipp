@@ -159,7 +159,9 @@ PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& resi
   scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
   full_ = load_ - force_ - full_ - other_;
   body_.conditions.gather(full_, residual);
-  return moving + stored_ - load_.dot(trial_);
+  const double work = load_.dot(trial_);
+  energy_scale_ = moving + std::abs(stored_) + std::abs(work);
+  return moving + stored_ - work;
 }
 
 PALPATE_INLINE bool ImplicitDynamics::prepare(const VectorX& x) noexcept {

@@ -63,7 +63,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
                                                     stiffness_of_shape(body.rest, p), limits);
     auto motion = std::make_unique<QuasiNewtonMotion>(
         std::move(made), detail::make_energy_forces<S>(std::move(body), limits), std::move(factor), p);
-    if (p.settle) motion->settle();
+    motion->begin();
     PreparedMotion prepared;
     prepared.start = motion->displacement();
     prepared.motion = std::move(motion);

@@ -16,7 +16,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// have similar rotations. O(nodes) in addition to the solve; only the constructor allocates.
 class CorotatedSolve {
  public:
-  explicit CorotatedSolve(const DeformableBody& body);
+  /// With a stiffness, rotations follow the stiffer ones of the parts around a node; see NodalRotations.
+  explicit CorotatedSolve(const DeformableBody& body, const BlockMatrix* stiffness = nullptr);
 
   const EssentialConditions& conditions() const noexcept { return conditions_; }
 

@@ -7,9 +7,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE CorotatedSolve::CorotatedSolve(const DeformableBody& body)
+PALPATE_INLINE CorotatedSolve::CorotatedSolve(const DeformableBody& body, const BlockMatrix* stiffness)
     : conditions_(body.conditions),
-      rotations_(body.pattern, body.positions, all_nodes(body.positions.size())),
+      rotations_(body.pattern, body.positions, all_nodes(body.positions.size()), stiffness),
       rotation_(body.positions.size(), Matrix3::Identity()),
       full_(3 * static_cast<Index>(body.positions.size())),
       x_(conditions_.free_count()) {}

@@ -79,8 +79,8 @@ class SurroundedForces final : public EnergyForces {
   Index size() const noexcept override { return part_->size(); }
   double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept override;
   double rounding() const noexcept override { return part_->rounding(); }
-  RoundingErrors rounding_errors(const std::vector<Vector3>& positions) override {
-    return part_->rounding_errors(positions);
+  double evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept override {
+    return part_->evaluate_rotated(positions, u, f);
   }
 
  private:

@@ -144,7 +144,7 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
   auto motion = std::make_unique<QuasiNewtonMotion>(
       std::move(near), std::make_unique<SurroundedForces>(std::move(near_forces), surroundings->stiffness(), kept),
       std::move(factor), parameters);
-  if (parameters.settle) motion->settle();
+  motion->begin();
   PreparedMotion prepared;
   prepared.motion = std::make_unique<PartlyLinearMotion>(std::move(parts), std::move(motion), std::move(surroundings),
                                                          whole.load, whole.positions);

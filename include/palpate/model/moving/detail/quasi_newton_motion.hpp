@@ -76,7 +76,10 @@ class QuasiNewtonMotion final : public TissueMotion {
   void set_load(const VectorX& load) override;
   void set_prescribed(const VectorX& values) override;
 
-  /// Minimises the static potential from the current state. Throws not_converged.
+  /// For set-up: settles unless the parameters say otherwise. Throws not_converged, and unsupported when rounding
+  /// errors of the forces would displace the body visibly: forces in single precision where stiffness varies by much.
+  void begin();
+  /// Minimises the static potential from the current state, in parts of the loads if necessary. Throws not_converged.
   VectorX settle();
 
   /// Of the last step.
@@ -91,10 +94,15 @@ class QuasiNewtonMotion final : public TissueMotion {
   double scale() const noexcept { return scale_; }
   double rounding() const noexcept;
   double potential_rounding() const noexcept;
+  double energy_scale() const noexcept { return potential_scale_; }
+  double energy_rounding() const noexcept;
+  bool is_uneven() const noexcept { return factor_->is_uneven(); }
 
  private:
   /// Sets the length of steps; factorises when it is new. Infinite: without inertia. Returns false without a factor.
   bool set_length(double h) noexcept;
+  /// Energy of the forces that are due to rounding, with the present factor.
+  void measure_rounding() noexcept;
   /// Potential and residual at trial_, from stored_ and force_.
   double balance(VectorX& residual) noexcept;
   /// Starts the method at u_, without an evaluation of the forces when they are known there.
@@ -102,6 +110,21 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// As in ImplicitDynamics: moves supports in parts where the body must follow each part. Ends at x_.
   bool move_supports() noexcept;
   static constexpr int most_support_parts = 64;
+  /// Throws unsupported when rounding errors of the forces would displace the body visibly.
+  void require_resolution() const;
+  /// Minimises the static potential at the present loads from u_, in rounds between which nodes are rotated. Returns
+  /// the relative residual that is left.
+  double find_equilibrium() noexcept;
+  /// The same in parts of the loads, from u_ without them.
+  double follow_loads();
+  /// Goes towards that minimum without a line search, each iteration from newly rotated nodes: in a straight step stiff
+  /// parts may turn by small angles only, because it stretches them; here the next iteration removes the stretch.
+  /// Leaves u_ when it does not arrive.
+  void relax();
+  /// Share of the tolerance to which a step reduces the residual in any case.
+  static constexpr double enough = 0.05;
+  /// Largest displacement by rounding errors that is accepted, relative to the size of the body.
+  static constexpr double most_rounding = 1e-4;
   /// A step of so many iterations needs no other factor.
   static constexpr int few_iterations = 2;
   /// Iterations of a shortened step.
@@ -114,7 +137,8 @@ class QuasiNewtonMotion final : public TissueMotion {
   std::shared_ptr<StepFactor> factor_;
   QuasiNewtonMethod method_;
   ImplicitStep step_;
-  VectorX inertia_;  // mass per dof
+  VectorX inertia_;          // mass per dof
+  VectorX rotated_, noise_;  // displacement by a rotation, and the forces computed there; empty when errors are given
   VectorX u_, v_, a_, load_, step_load_;
   VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
   VectorX x_, kept_load_, kept_free_;

@@ -66,7 +66,23 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
   parameters.require_usable();
   require_mass(body_);
   for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
-  floor_ = rounding_errors != nullptr ? *rounding_errors : forces_->rounding_errors(body_.positions);
+  if (rounding_errors != nullptr) {
+    floor_ = *rounding_errors;
+    return;
+  }
+  rotated_ = noise_ = u_;
+  floor_.energy = std::abs(forces_->evaluate_rotated(body_.positions, rotated_, noise_));
+  floor_.force = noise_.norm();
+  for (Index dof = 0; dof < noise_.size(); ++dof)
+    if (body_.conditions.is_constrained(dof)) noise_[dof] = 0.0;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::measure_rounding() noexcept {
+  if (noise_.size() == 0) return;
+  factor_->rotate(rotated_);
+  factor_->solve(noise_, other_);
+  floor_.work = std::abs(noise_.dot(other_));
+  floor_.displacement = other_.cwiseAbs().maxCoeff();
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
@@ -80,6 +96,7 @@ PALPATE_INLINE bool QuasiNewtonMotion::set_length(double h) noexcept {
   if (!factor_->set_mass(mass)) return false;
   method_.forget();
   length_ = h;
+  measure_rounding();
   return true;
 }
 
@@ -112,7 +129,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
                            .tolerance = parameters_.tolerance,
                            .maximum_evaluations = 3 * parameters_.maximum_iterations,
                            .reduction = shorten ? 1.0 : 0.1,
-                           .enough = 0.05});
+                           .enough = enough});
   if (!(method_.potential() < infinity) || !all_finite(method_.residual())) return done;
   accept();
   step_load_ = load_;
@@ -214,29 +231,105 @@ PALPATE_INLINE void QuasiNewtonMotion::set_prescribed(const VectorX& values) {
   body_.conditions.prescribed = values;
 }
 
+PALPATE_INLINE void QuasiNewtonMotion::begin() {
+  set_length(parameters_.inertia && !parameters_.settle ? parameters_.step : infinity);
+  require_resolution();
+  if (parameters_.settle) settle();
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::require_resolution() const {
+  const double most = most_rounding * extent(body_.positions);
+  if (!(floor_.displacement > most)) return;
+  SetupProblem p;
+  p.kind = SetupErrorKind::unsupported;
+  p.what = "rounding errors of the forces displace nodes by " + number(floor_.displacement) +
+           " m, because some parts are much stiffer than others";
+  p.hint = "Use QuasiNewton<double>, or a smaller contrast of stiffness";
+  p.value = floor_.displacement;
+  p.threshold = most;
+  raise(std::move(p));
+}
+
 PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   forces_->begin_step(infinity);
-  prescribed_ = body_.conditions.prescribed;
   if (!set_length(infinity)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
-  body_.conditions.gather(u_, x_);
-  QuasiNewtonReport report;
-  const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
-  for (int round = 0; round < 50 && !report.converged; ++round) {
-    factor_->rotate(u_);
-    method_.forget();
-    method_.start(*this, x_);
-    report = method_.solve(*this, x_, {.maximum_iterations = 20, .tolerance = tolerance});
-    body_.conditions.place(x_, body_.conditions.prescribed, u_);
+  const VectorX start = u_;
+  prescribed_ = body_.conditions.prescribed;
+  double left = find_equilibrium();
+  if (!(left <= enough * parameters_.tolerance)) {
+    u_ = start;
+    left = follow_loads();
   }
-  if (!report.converged)
-    raise(
-        SetupErrorKind::not_converged,
-        "no equilibrium was found under the loads: forces of " + number(report.relative_residual) + " of them are left",
-        "Set settle = false, or add supports");
+  if (!(left <= enough * parameters_.tolerance))
+    raise(SetupErrorKind::not_converged,
+          "no equilibrium was found under the loads: forces of " + number(left) + " of them are left",
+          is_uneven() ? "Reduce the loads or the contrast of stiffness, take QuasiNewton<double>, or set settle = false"
+                      : "Set settle = false, or add supports");
   known_.valid = false;
   forces_->end_step(u_);
   forces_->begin_step(0.0);
   return u_;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::find_equilibrium() noexcept {
+  constexpr int most_rounds = 50, most_in_round = 20;
+  const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
+  QuasiNewtonReport report;
+  for (int round = 0; round < most_rounds && !report.converged; ++round) {
+    factor_->rotate(u_);
+    method_.forget();
+    body_.conditions.gather(u_, x_);
+    method_.start(*this, x_);
+    report = method_.solve(*this, x_, {.maximum_iterations = most_in_round, .tolerance = tolerance});
+    body_.conditions.place(x_, prescribed_, u_);
+    if (report.evaluations == 0) break;  // no progress
+  }
+  return report.relative_residual;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::follow_loads() {
+  constexpr double smallest = 1.0 / 256.0;
+  const VectorX load = load_, from = u_;
+  double reached = 0.0, part = 0.125, left = infinity;
+  while (reached < 1.0 && part >= smallest) {
+    const double next = std::min(1.0, reached + part);
+    const VectorX before = u_;
+    load_ = next * load;
+    prescribed_ = from + next * (body_.conditions.prescribed - from);
+    relax();
+    left = find_equilibrium();
+    const bool found = left <= enough * parameters_.tolerance;
+    if (found) {
+      reached = next;
+      part *= 2.0;
+    } else {
+      u_ = before;
+      part *= 0.5;
+    }
+  }
+  load_ = load;
+  prescribed_ = body_.conditions.prescribed;
+  return reached == 1.0 ? left : 1.0;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::relax() {
+  constexpr int most = 40;
+  const double longest = 0.05 * extent(body_.positions);
+  double first = infinity;
+  body_.conditions.gather(u_, x_);
+  const VectorX start = u_;
+  for (int k = 0; k < most; ++k) {
+    body_.conditions.place(x_, prescribed_, u_);
+    factor_->rotate(u_);
+    if (!(evaluate(x_, method_.residual()) < infinity)) break;
+    precondition(method_.residual(), kept_free_);
+    const double work = kept_free_.dot(method_.residual()), step = kept_free_.cwiseAbs().maxCoeff();
+    if (k == 0) first = work;
+    if (work <= 1e-6 * potential_scale_) return;
+    if (!(work <= 1e3 * first) || !(step < infinity)) break;  // moves away
+    x_ += std::min(1.0, longest / step) * kept_free_;
+  }
+  u_ = start;
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::evaluate(const VectorX& x, VectorX& residual) noexcept {
@@ -286,6 +379,11 @@ PALPATE_INLINE void QuasiNewtonMotion::precondition(const VectorX& r, VectorX& d
 
 PALPATE_INLINE double QuasiNewtonMotion::rounding() const noexcept {
   return std::max(2.0 * floor_.force, 4.0 * std::numeric_limits<double>::epsilon() * scale_);
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::energy_rounding() const noexcept {
+  const double of_sums = 64.0 * std::numeric_limits<double>::epsilon();
+  return std::max(4.0 * floor_.work, of_sums * of_sums * potential_scale_);
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::potential_rounding() const noexcept {

@@ -38,6 +38,7 @@ class RenewableFactor final : public StepFactor {
   void rotate(const VectorX& u) noexcept override { corotated_.update(u, front().rotation); }
   /// z is zero on constrained dofs.
   void solve(const VectorX& r, VectorX& z) noexcept override { corotated_.solve(*front().factor, r, z); }
+  bool is_uneven() const noexcept override { return is_uneven_; }
   void ask(const VectorX& u) noexcept override;
   void take_renewed() noexcept override;
   long renewals() const noexcept override { return renewals_; }
@@ -58,12 +59,16 @@ class RenewableFactor final : public StepFactor {
   Shape& front() noexcept { return shapes_[front_]; }
   Shape& spare() noexcept { return shapes_[1 - front_]; }
   Shape make_shape(const DeformableBody& body, const std::vector<NodeId>& last, const SetupLimits& limits) const;
+  /// Ratio of the largest and the smallest modulus around a node, as far as the diagonal shows it.
+  double contrast() const noexcept;
+  static constexpr double uneven_contrast = 100.0;
   // In the thread
   void renew() noexcept;
   bool find_stiffness(BlockMatrix& k) noexcept;
 
   VectorX lumped_;         // mass per node [kg]
   BlockMatrix stiffness_;  // at rest
+  bool is_uneven_;
   CorotatedSolve corotated_;
   std::array<Shape, 2> shapes_;
   std::size_t front_ = 0;

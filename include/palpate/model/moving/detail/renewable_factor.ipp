@@ -5,6 +5,7 @@
 #include <palpate/model/moving/detail/renewable_factor.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -12,7 +13,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE RenewableFactor::RenewableFactor(const DeformableBody& body, BlockMatrix stiffness,
                                                 const std::vector<NodeId>& last, StiffnessAt stiffness_at,
                                                 const SetupLimits& limits)
-    : lumped_(body.lumped), stiffness_(std::move(stiffness)), corotated_(body), stiffness_at_(std::move(stiffness_at)) {
+    : lumped_(body.lumped),
+      stiffness_(std::move(stiffness)),
+      is_uneven_(contrast() > uneven_contrast),
+      corotated_(body, is_uneven_ ? &stiffness_ : nullptr),
+      stiffness_at_(std::move(stiffness_at)) {
   front() = make_shape(body, last, limits);
   if (!stiffness_at_) return;
   spare() = make_shape(body, last, limits);
@@ -28,6 +33,18 @@ PALPATE_INLINE RenewableFactor::Shape RenewableFactor::make_shape(const Deformab
                                                 FactorScalar::single_precision, last);
   made.rotation.assign(body.positions.size(), Matrix3::Identity());
   return made;
+}
+
+PALPATE_INLINE double RenewableFactor::contrast() const noexcept {
+  double smallest = infinity, largest = 0.0;
+  for (Index i = 0; i < lumped_.size(); ++i) {
+    const double stiffness = stiffness_.block(stiffness_.pattern().diagonal(i)).trace();
+    if (!(lumped_[i] > 0.0) || !(stiffness > 0.0)) continue;
+    const double modulus = stiffness / std::cbrt(lumped_[i]);  // stiffness: modulus times size
+    smallest = std::min(smallest, modulus);
+    largest = std::max(largest, modulus);
+  }
+  return largest > 0.0 ? largest / smallest : 1.0;
 }
 
 PALPATE_INLINE bool RenewableFactor::set_mass(double mass) noexcept {

@@ -22,6 +22,10 @@ class StepFactor {
   /// z = inverse times r. On constrained dofs r is zero, and z is not read.
   virtual void solve(const VectorX& r, VectorX& z) noexcept = 0;
 
+  /// Whether some parts are much stiffer than others. Then the norm of forces does not show whether all are in
+  /// equilibrium.
+  virtual bool is_uneven() const noexcept = 0;
+
   /// Asks for a factor at displacement u [m] from another thread, if there is one and it is idle.
   virtual void ask(const VectorX&) noexcept {}
   /// Takes the factor from that thread if it is ready.
