@@ -137,10 +137,10 @@ TEST_CASE("a moved, rotated or scaled copy of body and path gives the same force
   double largest = 0.0;
   for (const Vector3& f : original) largest = std::max(largest, f.norm());
   REQUIRE(largest > 0.01);
-  const Matrix3 turned = testing::random_rotation(random);
+  const Matrix3 rotated = testing::random_rotation(random);
   for (const Copy& copy :
-       {Copy{.shift = {0.31, -0.17, 0.53}}, Copy{.scale = 1.0 / 3.0}, Copy{.scale = 7.3}, Copy{.rotation = turned},
-        Copy{.scale = 0.9, .rotation = turned, .shift = {0.1, 0.2, 0.3}}}) {
+       {Copy{.shift = {0.31, -0.17, 0.53}}, Copy{.scale = 1.0 / 3.0}, Copy{.scale = 7.3}, Copy{.rotation = rotated},
+        Copy{.scale = 0.9, .rotation = rotated, .shift = {0.1, 0.2, 0.3}}}) {
     const std::vector<Vector3> forces = forces_on_copy(radius, copy);
     double worst = 0.0;
     for (std::size_t i = 0; i < forces.size(); ++i) worst = std::max(worst, (forces[i] - original[i]).norm());

@@ -105,7 +105,7 @@ TEST_CASE("with a single linearisation the force of a fast sphere is within two 
   CHECK(worst <= 2e-3);
 }
 
-/// A block and the same one turned by half a turn about the x-axis through `centre`, as a group.
+/// A block and the same one rotated by 180 degrees about the x-axis through `centre`, as a group.
 struct Slot {
   using Block = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 
