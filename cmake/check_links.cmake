@@ -105,7 +105,7 @@ foreach(page IN LISTS pages)
     endif()
   endforeach()
 
-  string(REGEX MATCHALL "cmake/run [a-z][a-z-]*" commands "${text}")
+  string(REGEX MATCHALL "cmake/run [a-z][a-z0-9-]*" commands "${text}")
   foreach(command IN LISTS commands)
     string(REGEX REPLACE "^cmake/run " "" command "${command}")
     string(REPLACE "-" "_" command "${command}")
