@@ -11,7 +11,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// All contacts of all tools with one tissue. Contact is enforced at material points of the surface: vertices, and a
-/// lattice on edges longer than `sample_spacing` radii. A sliding sphere reaches these points one after the other, each
+/// lattice on edges of `sample_spacing` radii or more. A sliding sphere reaches these points one after the other, each
 /// with zero force at first, so the force has no jump at edges. Each tick linearises the distance between sphere and
 /// deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini problem
 /// on the contact compliance J C J^T exactly, and repeats while the force still changes. The rows of that problem are

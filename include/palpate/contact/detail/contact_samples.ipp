@@ -22,10 +22,10 @@ inline double difference(const ContactSample& a, const ContactSample& b) noexcep
   return sum;
 }
 
-/// An edge of a whole number of spacings has that number of parts, also where rounding made it longer: coordinates in
-/// float are rounded by 1e-7. A rotated or scaled copy of the surface then has the same points.
+/// An edge of a whole number of spacings has one part more, as if it were longer, whether rounding made it so or not:
+/// coordinates in float are rounded by 1e-7. A rotated or scaled copy of the surface then has the same points.
 inline int subdivision(double length, double spacing) {
-  const double parts = std::ceil((1.0 - ContactSamples::rounding) * length / spacing);
+  const double parts = std::ceil((1.0 + ContactSamples::rounding) * length / spacing);
   return static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
 }
 
