@@ -117,6 +117,7 @@ PALPATE_INLINE void ImplicitDynamics::rest_at(const VectorX& u) {
 PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX& v, double seconds) {
   for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
   end();
+  tangent_.forget();
   body_.elastic->begin_step(seconds);
   for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may alias u_ and v_
     const bool constrained = body_.conditions.is_constrained(dof);

@@ -211,10 +211,11 @@ PALPATE_INLINE void MovingTissue::restart() {
   place(Eigen::Isometry3d::Identity());
   keep_loads(scene().gravity(), others);
   pressing_.update();
+  pressing_.front() = {};  // of a session before the reset
   used_ = {};
   secants_.clear();
   find_moved(moved_);
-  was_slit_ = false;
+  loads_changed_ = was_slit_ = false;
   steps_ = 0;
   publish({});
 }
