@@ -1,5 +1,6 @@
 // Dynamics against closed forms, conservation laws and another code.
 #include <palpate/element/hex8.hpp>
+#include <palpate/element/tet10.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -8,6 +9,7 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/promote.hpp>
 #include <palpate/model/moving/equilibrium.hpp>
 #include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/testing/random.hpp>
@@ -465,4 +467,25 @@ TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step
     CHECK_THAT(top(d), WithinAbs(moved, 1e-15));
     CHECK((d.displacement() - slow.displacement()).norm() <= 1e-6 * slow.displacement().norm());
   }
+}
+
+TEST_CASE("a nearly incompressible bar follows its support in steps of two iterations, and returns",
+          "[model][dynamics][extreme]") {
+  const Mesh<Tet10> mesh = promote<Tet10>(box_tet4({0.06, 0.02, 0.02}, {6, 2, 2}, BoxSplit::six));
+  ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{NeoHookean{5e3, 0.499, 1000.0}}),
+                                          Scene().fix("x0").fix("x1")),
+                     {.mass_damping = 20.0, .newton = {.maximum_iterations = 2, .tolerance = 1e-9}});
+  const auto pull = [&](double stretch) {
+    VectorX values = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (mesh.position(i)[0] > 0.0599) values[3 * i] = 0.06 * stretch;
+    d.set_prescribed(values);
+    return d.step(0.01);
+  };
+  constexpr int steps = 10;
+  for (int k = 1; k <= steps; ++k) CHECK(pull(1.0 * k / steps).deformation.inverted == 0);
+  for (int k = 0; k < 20; ++k) pull(1.0);
+  for (int k = steps - 1; k >= 0; --k) CHECK(pull(1.0 * k / steps).deformation.inverted == 0);
+  for (int k = 0; k < 60; ++k) pull(0.0);
+  CHECK(d.displacement().cwiseAbs().maxCoeff() <= 1e-5);
 }

@@ -242,6 +242,30 @@ TEST_CASE("supports of quasi-Newton tissue may move by more than a layer in a st
   }
 }
 
+TEST_CASE("nearly incompressible tissue stretched by a support follows, and returns",
+          "[model][quasi_newton][extreme]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.06, 0.02, 0.02}, {12, 4, 4}, BoxSplit::six));
+  const auto motion =
+      quasi_newton(mesh, Scene().fix("x0").fix("x1").touch("z1"), {.inertia = false}, {5e3, 0.499, 1000.0});
+  const auto pull = [&](double stretch) {
+    VectorX values = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (mesh.position(i)[0] > 0.0599) values[3 * i] = 0.06 * stretch;
+    motion->set_prescribed(values);
+    return motion->step(0.016);
+  };
+  const auto hold = [&](double stretch) {
+    for (int k = 0; k < 10; ++k) pull(stretch);
+    return pull(stretch).status;
+  };
+  constexpr int steps = 50;
+  for (int k = 1; k <= steps; ++k) CHECK(pull(0.4 * k / steps).deformation.inverted == 0);
+  CHECK(hold(0.4).ok());
+  for (int k = steps - 1; k >= 0; --k) CHECK(pull(0.4 * k / steps).deformation.inverted == 0);
+  CHECK(hold(0.0).ok());
+  CHECK(motion->displacement().cwiseAbs().maxCoeff() <= 1e-6);
+}
+
 TEST_CASE("a body without supports is refused without inertia, and moves with it", "[model][quasi_newton]") {
   const auto mesh = one_session::block();
   const Scene free = Scene().touch("z1");
