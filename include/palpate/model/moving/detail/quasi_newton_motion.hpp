@@ -63,6 +63,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   bool prepare_response(double h) noexcept override;
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   bool is_static() const noexcept override { return !parameters_.inertia && !forces_->has_history(); }
+  bool is_quasi_static() const noexcept override { return !parameters_.inertia; }
   const VectorX& displacement() const noexcept override { return u_; }
   const VectorX& velocity() const noexcept override { return v_; }
   bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
