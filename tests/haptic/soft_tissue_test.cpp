@@ -139,6 +139,30 @@ TEST_CASE("a released tissue returns to rest, and a stalled one stays elastic", 
   CHECK(servo.contact_force()[2] == 0.0);
 }
 
+TEST_CASE("a tissue after reset knows nothing of the session before", "[haptic][soft]") {
+  Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -1.0}), NeoHookean{5e3, 0.4, 1000.0});
+  const VectorX start = tissue.displacement();
+  const auto forces_of_session = [&] {
+    HapticServo servo(tissue, SphereTool{.radius = sphere}, device());
+    std::vector<Vector3> forces;
+    for (int k = 0; k < 200; ++k) {
+      if (k % 10 == 0) tissue.advance();
+      forces.push_back(servo.tick(above(k, std::min(5e-3, 1e-4 * k))).force());
+    }
+    return forces;
+  };
+  const std::vector<Vector3> first = forces_of_session();
+  CHECK(first.back()[2] > 0.1);
+  tissue.reset();
+  CHECK(forces_of_session() == first);
+  tissue.set_gravity({0.0, 0.0, -9.81});
+  tissue.reset();
+  for (int k = 0; k < 10; ++k) tissue.advance();
+  CHECK((tissue.displacement() - start).cwiseAbs().maxCoeff() <= 1e-12);
+  tissue.reset();
+  CHECK(forces_of_session() == first);
+}
+
 TEST_CASE("the tissue is settled under gravity before the first touch", "[haptic][soft]") {
   Soft<NeoHookean> tissue(pad(), pad_scene().gravity({0.0, 0.0, -9.81}), NeoHookean{5e3, 0.45, 1000.0}, {},
                           with_step(0.01));

@@ -128,6 +128,15 @@ TEST_CASE("a column of tetrahedra buckles too, and straightens when it is unload
   CHECK(Column::sideways(body, tets.node_count(), 6) <= 1e-9 * Column::length);
 }
 
+TEST_CASE("a body solved again has the same equilibrium to the last bit", "[model][equilibrium][buckling]") {
+  const Mesh<Tet4> tets = box_tet4({Column::thickness, Column::width, Column::length}, {1, 2, 12}, BoxSplit::six);
+  Equilibrium body = Column::loaded(promote<Tet10>(tets), 1.1 * Column::euler);
+  REQUIRE(body.solve().converged);
+  const VectorX first = body.displacement();
+  REQUIRE(body.solve().converged);
+  CHECK(body.displacement() == first);
+}
+
 TEST_CASE("a shallow truss snaps through beyond its limit load, and stays there", "[model][equilibrium][buckling]") {
   const double limit = Truss::load_at(std::sqrt(1.0 / 3.0));
   Truss stiff;

@@ -1,5 +1,6 @@
 // Dynamics against closed forms, conservation laws and another code.
 #include <palpate/element/hex8.hpp>
+#include <palpate/element/tet10.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -8,6 +9,7 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
+#include <palpate/mesh/promote.hpp>
 #include <palpate/model/moving/equilibrium.hpp>
 #include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/testing/random.hpp>
@@ -269,6 +271,22 @@ TEST_CASE("bodies with random displacements settle to rest", "[model][dynamics][
   CHECK(settled == runs);
 }
 
+TEST_CASE("a motion set to a state again repeats itself to the last bit", "[model][dynamics]") {
+  testing::Random random(11);
+  ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
+  VectorX folded(d.displacement().size());
+  for (double& x : folded) x = random.uniform(-0.08, 0.08);  // tangents that are not positive definite
+  std::vector<VectorX> first;
+  for (int run = 0; run < 2; ++run) {
+    d.rest_at(folded);
+    for (std::size_t k = 0; k < 10; ++k) {
+      d.step(0.02);
+      if (run == 0) first.push_back(d.displacement());
+      CHECK(d.displacement() == first[k]);
+    }
+  }
+}
+
 TEST_CASE("dynamics refuses bodies without mass, and negative damping", "[model][dynamics]") {
   const auto kind = [](DeformableBody body, const DynamicsParameters& parameters) {
     try {
@@ -449,4 +467,25 @@ TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step
     CHECK_THAT(top(d), WithinAbs(moved, 1e-15));
     CHECK((d.displacement() - slow.displacement()).norm() <= 1e-6 * slow.displacement().norm());
   }
+}
+
+TEST_CASE("a nearly incompressible bar follows its support in steps of two iterations, and returns",
+          "[model][dynamics][extreme]") {
+  const Mesh<Tet10> mesh = promote<Tet10>(box_tet4({0.06, 0.02, 0.02}, {6, 2, 2}, BoxSplit::six));
+  ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{NeoHookean{5e3, 0.499, 1000.0}}),
+                                          Scene().fix("x0").fix("x1")),
+                     {.mass_damping = 20.0, .newton = {.maximum_iterations = 2, .tolerance = 1e-9}});
+  const auto pull = [&](double stretch) {
+    VectorX values = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (mesh.position(i)[0] > 0.0599) values[3 * i] = 0.06 * stretch;
+    d.set_prescribed(values);
+    return d.step(0.01);
+  };
+  constexpr int steps = 10;
+  for (int k = 1; k <= steps; ++k) CHECK(pull(1.0 * k / steps).deformation.inverted == 0);
+  for (int k = 0; k < 20; ++k) pull(1.0);
+  for (int k = steps - 1; k >= 0; --k) CHECK(pull(1.0 * k / steps).deformation.inverted == 0);
+  for (int k = 0; k < 60; ++k) pull(0.0);
+  CHECK(d.displacement().cwiseAbs().maxCoeff() <= 1e-5);
 }

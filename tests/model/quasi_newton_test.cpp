@@ -222,6 +222,37 @@ TEST_CASE("viscoelastic tissue relaxes in quasi-Newton steps as in Newton's", "[
   CHECK((motion->displacement() - newton.displacement()).norm() <= 1e-6 * newton.displacement().norm());
 }
 
+TEST_CASE("viscoelastic tissue without inertia relaxes under a deep press without swinging",
+          "[model][quasi_newton][viscous]") {
+  using Law = Viscoelastic<NeoHookean, 1>;
+  const Law law{.base = {5e3, 0.45, 1000.0}, .terms = {{{0.5, 0.3}}}, .relaxation = Relaxation::deviatoric};
+  const auto mesh = promote<Tet10>(box_tet4({0.06, 0.06, 0.03}, {5, 5, 3}, BoxSplit::six));
+  const Scene scene = Scene().fix("z0").touch("z1");
+  const double radius = 0.01;
+  std::vector<double> relaxed;
+  for (const double step : {0.016, 0.025}) {
+    HapticFEModel<Tet10, Law, Implicit<QuasiNewton<>>> model(mesh, scene, law, {}, {.step = step, .inertia = false});
+    HapticServo servo(model, SphereTool{.radius = radius}, one_session::stiff_device());
+    double next = 0.0, last = 0.0;
+    for (int k = 0; k < 2500; ++k) {
+      if (1e-3 * k >= next - 1e-9) next += model.background_work().next;
+      ToolState state;
+      state.time = 1e-3 * (k + 1);
+      state.position = Vector3(0.031, 0.0295, 0.03 + radius - radius * std::min(1.0, 0.01 * k));
+      const Status status = servo.tick(state).status;
+      const double force = servo.contact_force()[2];
+      if (k > 1000) {
+        CHECK(!status.has(StatusFlag::solver_not_converged));
+        CHECK(force <= last + 1e-3);
+      }
+      last = force;
+    }
+    relaxed.push_back(last);
+  }
+  CHECK(relaxed[0] > 0.5);
+  CHECK(std::abs(relaxed[1] - relaxed[0]) <= 5e-3 * relaxed[0]);
+}
+
 TEST_CASE("supports of quasi-Newton tissue may move by more than a layer in a step", "[model][quasi_newton][extreme]") {
   const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.08}, {2, 2, 8}));
   for (const bool inertia : {false, true}) {
@@ -240,6 +271,30 @@ TEST_CASE("supports of quasi-Newton tissue may move by more than a layer in a st
     }
     CHECK(motion->displacement()[3 * (mesh.node_count() - 1) + 2] == -0.025);
   }
+}
+
+TEST_CASE("nearly incompressible tissue stretched by a support follows, and returns",
+          "[model][quasi_newton][extreme]") {
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.06, 0.02, 0.02}, {12, 4, 4}, BoxSplit::six));
+  const auto motion =
+      quasi_newton(mesh, Scene().fix("x0").fix("x1").touch("z1"), {.inertia = false}, {5e3, 0.499, 1000.0});
+  const auto pull = [&](double stretch) {
+    VectorX values = VectorX::Zero(3 * mesh.node_count());
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      if (mesh.position(i)[0] > 0.0599) values[3 * i] = 0.06 * stretch;
+    motion->set_prescribed(values);
+    return motion->step(0.016);
+  };
+  const auto hold = [&](double stretch) {
+    for (int k = 0; k < 10; ++k) pull(stretch);
+    return pull(stretch).status;
+  };
+  constexpr int steps = 50;
+  for (int k = 1; k <= steps; ++k) CHECK(pull(0.4 * k / steps).deformation.inverted == 0);
+  CHECK(hold(0.4).ok());
+  for (int k = steps - 1; k >= 0; --k) CHECK(pull(0.4 * k / steps).deformation.inverted == 0);
+  CHECK(hold(0.0).ok());
+  CHECK(motion->displacement().cwiseAbs().maxCoeff() <= 1e-6);
 }
 
 TEST_CASE("a body without supports is refused without inertia, and moves with it", "[model][quasi_newton]") {

@@ -38,8 +38,10 @@ class CutFactor final : public StepFactor {
   void restart();
 
   bool set_mass(double mass) noexcept override;
-  void rotate(const VectorX& u) noexcept override;
+  void rotate(const VectorX& u, bool stretched = false) noexcept override;
   void solve(const VectorX& r, VectorX& z) noexcept override;
+  /// Without the copies.
+  void apply(const VectorX& x, VectorX& y) noexcept override;
   bool is_uneven() const noexcept override { return base_->is_uneven(); }
   void take_renewed() noexcept override;
   long renewals() const noexcept override { return renewals_; }

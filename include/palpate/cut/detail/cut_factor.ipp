@@ -61,9 +61,9 @@ PALPATE_INLINE bool CutFactor::set_mass(double mass) noexcept {
   return base_->set_mass(mass);
 }
 
-PALPATE_INLINE void CutFactor::rotate(const VectorX& u) noexcept {
+PALPATE_INLINE void CutFactor::rotate(const VectorX& u, bool stretched) noexcept {
   base_z_ = u.head(base_z_.size());  // nodes that exist in the base keep their ids
-  base_->rotate(base_z_);
+  base_->rotate(base_z_, stretched);
 }
 
 PALPATE_INLINE void CutFactor::solve(const VectorX& r, VectorX& z) noexcept {
@@ -75,6 +75,13 @@ PALPATE_INLINE void CutFactor::solve(const VectorX& r, VectorX& z) noexcept {
     set_node_vector(z, static_cast<Index>(i), node_vector(base_z_, Index{base_node_[i]}));
   for (std::size_t k = 0; k < split_.size(); ++k)
     add_node_vector(z, Index{split_[k]}, relative_[k] * node_vector(r, Index{split_[k]}));
+}
+
+PALPATE_INLINE void CutFactor::apply(const VectorX& x, VectorX& y) noexcept {
+  base_z_ = x.head(base_z_.size());
+  base_->apply(base_z_, base_r_);
+  y.setZero();
+  y.head(base_r_.size()) = base_r_;
 }
 
 PALPATE_INLINE void CutFactor::take_renewed() noexcept {

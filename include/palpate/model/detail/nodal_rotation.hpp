@@ -21,6 +21,8 @@ class NodalRotations {
 
   /// Rotation at the k-th chosen node under a displacement u with 3 entries per node [m].
   Matrix3 operator()(std::size_t k, const VectorX& u) const noexcept;
+  /// Gradient of that motion.
+  Matrix3 gradient(std::size_t k, const VectorX& u) const noexcept;
 
  private:
   std::vector<NodeId> nodes_;

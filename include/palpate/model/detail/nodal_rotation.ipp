@@ -38,13 +38,17 @@ PALPATE_INLINE NodalRotations::NodalRotations(const BlockPattern& pattern, const
 }
 
 PALPATE_INLINE Matrix3 NodalRotations::operator()(std::size_t k, const VectorX& u) const noexcept {
+  const Matrix3 f = gradient(k, u);
+  return all_finite(f) ? matrix3(closest_rotation(tensor3<double>(f))) : Matrix3(Matrix3::Identity());
+}
+
+PALPATE_INLINE Matrix3 NodalRotations::gradient(std::size_t k, const VectorX& u) const noexcept {
   const Vector3 own = node_vector(u, nodes_[k]);
   const std::vector<Vector3>& weighted = weighted_.empty() ? offset_ : weighted_;
   Matrix3 f = Matrix3::Zero();
   for (std::size_t i = first_[k]; i < first_[k + 1]; ++i)
     f += (offset_[i] + node_vector(u, neighbour_[i]) - own) * weighted[i].transpose();
-  f = f * inverse_[k];
-  return all_finite(f) ? matrix3(closest_rotation(tensor3<double>(f))) : Matrix3(Matrix3::Identity());
+  return f * inverse_[k];
 }
 
 }}  // namespace palpate

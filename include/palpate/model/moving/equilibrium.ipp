@@ -57,6 +57,8 @@ PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& 
 PALPATE_INLINE EquilibriumReport Equilibrium::solve(const EquilibriumParameters& parameters) {
   require_usable(parameters);
   stepped_ = false;
+  tangent_.forget();
+  descent_.forget();
   body_.elastic->begin_step(infinity);
   from_prescribed_.setZero();
   from_load_.setZero();

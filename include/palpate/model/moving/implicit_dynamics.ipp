@@ -54,6 +54,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   work_before_ = work_;
   if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
   start_from_the_lower();
+  if (supports_move()) predict();
   if (!move_supports()) return report;
   report.newton = newton_.solve(*this, x_);
   if (!std::isfinite(evaluate(x_, residual_)) || !all_finite(velocity_)) return report;
@@ -117,6 +118,7 @@ PALPATE_INLINE void ImplicitDynamics::rest_at(const VectorX& u) {
 PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX& v, double seconds) {
   for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
   end();
+  tangent_.forget();
   body_.elastic->begin_step(seconds);
   for (Index dof = 0; dof < u_.size(); ++dof) {  // u and v may alias u_ and v_
     const bool constrained = body_.conditions.is_constrained(dof);
@@ -206,6 +208,29 @@ PALPATE_INLINE void ImplicitDynamics::start_from_the_lower() noexcept {
   body_.conditions.gather(u_, start_);
   const double coasted = evaluate(x_, residual_);
   if (!(coasted <= evaluate(start_, residual_))) x_ = start_;
+}
+
+PALPATE_INLINE bool ImplicitDynamics::supports_move() const noexcept {
+  for (Index dof = 0; dof < u_.size(); ++dof)
+    if (body_.conditions.is_constrained(dof) && u_[dof] != prescribed_[dof]) return true;
+  return false;
+}
+
+PALPATE_INLINE void ImplicitDynamics::predict() noexcept {
+  const double least = evaluate(x_, residual_);
+  prescribed_ = from_;
+  body_.conditions.gather(u_, start_);
+  const bool known = evaluate(start_, residual_) < infinity && prepare_at(u_);
+  prescribed_ = body_.conditions.prescribed;
+  if (!known) return;
+  other_ = prescribed_ - u_;
+  for (const Index dof : body_.conditions.free_dofs) other_[dof] = 0.0;
+  tangent_.matrix().apply(other_, full_);
+  body_.conditions.gather(full_, change_);
+  residual_ -= change_;
+  tangent_.solve(residual_, change_);
+  start_ += change_;
+  if (evaluate(start_, residual_) <= least) x_ = start_;
 }
 
 PALPATE_INLINE bool ImplicitDynamics::move_supports() noexcept {

@@ -224,6 +224,7 @@ class MovingTissue : public ModelBase {
   void list_every_vertex();
   std::span<const int> near_vertices() const noexcept;
   bool presses_beside_slit() const noexcept;
+  void record_pair(const Forces& before, double error) noexcept;
   void record_response(Forces& part, const MotionStep& done) noexcept;
   /// The displacement of the vertices.
   void find_moved(std::vector<Vector3>& moved) const noexcept;

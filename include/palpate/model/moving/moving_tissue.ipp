@@ -50,7 +50,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   const double near_bytes = 3.0 * NearCompliance::bytes(nodes_.size(), most_near, most_pressed);  // one per view
   limits().require_memory(near_bytes, "the compliance near the contacts");
   triangles_ = touchable.triangles;
-  if (motion_->is_static()) start_secants();
+  if (motion_->is_quasi_static()) start_secants();
   View view = make_view();
   view.near = {nodes_.size(), most_near, most_pressed};
   update_view(view);
@@ -84,7 +84,7 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
   view.free.resize(vertices);
   view.pressed.resize(vertices);
   view.rotation.resize(vertices);
-  if (motion_->is_static())
+  if (motion_->is_quasi_static())
     for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
   view.compliance = compliance_;
   view.requested.assign(vertices, ~std::uint64_t{0});
@@ -104,21 +104,21 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
   used_ = pressing_.front();
+  // With a history, the correction changes the displacement by the change of forces alone; a step also by creep.
+  if (motion_->is_quasi_static() && !motion_->is_static() && corrected) record_pair(before, 0.0);
   if (used_.number != changed_.number) used_.count = split_.divide(used_.item, used_.count);
   const bool was_slit = std::exchange(was_slit_, false);
   full_ = load_;
   add(used_, 1.0, full_);
   motion_->set_load(full_);
   const MotionStep done = motion_->step(step_);
-  if (motion_->is_static()) {
-    moved_before_.swap(moved_);
-    find_moved(moved_);
+  if (motion_->is_quasi_static()) {
     if (loads_changed_)
       secants_.clear();
-    else if (done.taken)
-      secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_,
-                      done.relative_residual);
+    else if (done.taken && motion_->is_static())
+      record_pair(before, done.relative_residual);
     loads_changed_ = false;
+    find_moved(moved_);
     if (was_slit && presses_beside_slit()) record_response(before, done);
   }
   Status status = done.status;
@@ -126,6 +126,13 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   publish(status);
   ++steps_;
   return done;
+}
+
+/// Records the change of displacement since `moved_` that the change of forces since `before` has caused.
+PALPATE_INLINE void MovingTissue::record_pair(const Forces& before, double error) noexcept {
+  moved_before_.swap(moved_);
+  find_moved(moved_);
+  secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_, error);
 }
 
 PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
@@ -204,10 +211,11 @@ PALPATE_INLINE void MovingTissue::restart() {
   place(Eigen::Isometry3d::Identity());
   keep_loads(scene().gravity(), others);
   pressing_.update();
+  pressing_.front() = {};  // of a session before the reset
   used_ = {};
   secants_.clear();
   find_moved(moved_);
-  was_slit_ = false;
+  loads_changed_ = was_slit_ = false;
   steps_ = 0;
   publish({});
 }
@@ -233,7 +241,7 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   rest_.clear();
   for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
   list_every_vertex();
-  if (motion_->is_static()) start_secants();
+  if (motion_->is_quasi_static()) start_secants();
   const std::uint64_t number = changed_.number + 1;
   changed_ = make_view();
   changed_.number = number;

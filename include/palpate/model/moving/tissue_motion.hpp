@@ -47,6 +47,9 @@ class TissueMotion {
   /// Whether every step ends in the equilibrium of its loads, so that the displacement is a function of the loads
   /// alone.
   virtual bool is_static() const noexcept { return false; }
+  /// Whether the end of a step depends on loads and on the history before it alone: there is no inertia. `correct` then
+  /// shows how the displacement depends on the loads, whatever the history.
+  virtual bool is_quasi_static() const noexcept { return is_static(); }
   /// State after the last step [m], [m/s]. A motion may leave a part of it to `complete` on nodes that no tool touches.
   virtual const VectorX& displacement() const noexcept = 0;
   virtual const VectorX& velocity() const noexcept = 0;

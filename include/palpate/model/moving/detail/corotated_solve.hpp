@@ -12,7 +12,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// z = R A^-1 R^T r with a factor of A and a rotation per node. Exact for a rigid rotation, accurate where neighbours
+/// z = R A^-1 R^T r with a factor of A and a rotation R per node. Exact for a rigid rotation, accurate where neighbours
 /// have similar rotations. O(nodes) in addition to the solve; only the constructor allocates.
 class CorotatedSolve {
  public:
@@ -27,9 +27,15 @@ class CorotatedSolve {
   void update(const VectorX& u) noexcept { fit(u, rotation_); }
   /// The same for a factor of the body whose nodes were rotated by `since`.
   void update(const VectorX& u, const std::vector<Matrix3>& since) noexcept;
+  /// Sets deformation gradients in place of rotations, for a factor of the body at rest, where they are moderate. They
+  /// map displacements without a change of volume to such ones (Piola), so that the solve stays near the inverse for
+  /// nearly incompressible tissue that is stretched. For other tissue rotations are nearer.
+  void update_stretched(const VectorX& u) noexcept;
 
   /// Vectors have 3 entries per node; z is zero on constrained dofs.
   void solve(TangentSolver& factor, const VectorX& r, VectorX& z) noexcept;
+  /// y = R A R^T x.
+  void apply(const BlockMatrix& a, const VectorX& x, VectorX& y) noexcept;
 
  private:
   static std::vector<NodeId> all_nodes(std::size_t count);

@@ -3,6 +3,8 @@
 
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 
+#include <Eigen/LU>
+
 #include <numeric>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -23,6 +25,16 @@ PALPATE_INLINE void CorotatedSolve::update(const VectorX& u, const std::vector<M
   for (std::size_t i = 0; i < rotation_.size(); ++i) rotation_[i] = rotation_[i] * since[i].transpose();
 }
 
+PALPATE_INLINE void CorotatedSolve::update_stretched(const VectorX& u) noexcept {
+  constexpr double most = 3.0;  // change of volume, and mean square stretch
+  for (std::size_t i = 0; i < rotation_.size(); ++i) {
+    const Matrix3 f = rotations_.gradient(i, u);
+    const double volume = f.determinant();
+    const bool moderate = volume > 1.0 / most && volume < most && f.squaredNorm() < 3.0 * most;
+    rotation_[i] = moderate ? f : rotations_(i, u);
+  }
+}
+
 PALPATE_INLINE void CorotatedSolve::solve(TangentSolver& factor, const VectorX& r, VectorX& z) noexcept {
   for (std::size_t i = 0; i < rotation_.size(); ++i) {
     const auto node = static_cast<Index>(i);
@@ -37,6 +49,18 @@ PALPATE_INLINE void CorotatedSolve::solve(TangentSolver& factor, const VectorX& 
   }
   for (Index dof = 0; dof < z.size(); ++dof)
     if (conditions_.is_constrained(dof)) z[dof] = 0.0;
+}
+
+PALPATE_INLINE void CorotatedSolve::apply(const BlockMatrix& a, const VectorX& x, VectorX& y) noexcept {
+  for (std::size_t i = 0; i < rotation_.size(); ++i) {
+    const auto node = static_cast<Index>(i);
+    set_node_vector(full_, node, rotation_[i].transpose() * node_vector(x, node));
+  }
+  a.apply(full_, y);
+  for (std::size_t i = 0; i < rotation_.size(); ++i) {
+    const auto node = static_cast<Index>(i);
+    set_node_vector(y, node, rotation_[i] * node_vector(y, node));
+  }
 }
 
 PALPATE_INLINE std::vector<NodeId> CorotatedSolve::all_nodes(std::size_t count) {

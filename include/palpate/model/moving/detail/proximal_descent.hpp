@@ -23,6 +23,9 @@ class ProximalDescent {
  public:
   ProximalDescent(TangentSolver& tangent, Index size);
 
+  /// Forgets the softest mode, from which a run starts.
+  void forget() noexcept;
+
   /// Moves x to a minimum of the potential, to the tolerance of the relative residual. Takes at most `most`
   /// factorisations (and up to 10 more that end a step), which are added to `count`. False: x is not a minimum.
   template <class Problem>

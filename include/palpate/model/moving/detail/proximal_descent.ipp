@@ -7,7 +7,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ProximalDescent::ProximalDescent(TangentSolver& tangent, Index size)
     : tangent_(tangent), residual_(size), step_(size), centre_(size), mode_(size) {
-  for (Index i = 0; i < size; ++i) mode_[i] = std::sin(1.0 + static_cast<double>(i));
+  forget();
+}
+
+PALPATE_INLINE void ProximalDescent::forget() noexcept {
+  for (Index i = 0; i < mode_.size(); ++i) mode_[i] = std::sin(1.0 + static_cast<double>(i));
 }
 
 PALPATE_INLINE bool ProximalDescent::find_shift(double& shift, int& count) noexcept {

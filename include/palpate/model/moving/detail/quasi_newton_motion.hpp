@@ -63,6 +63,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   bool prepare_response(double h) noexcept override;
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   bool is_static() const noexcept override { return !parameters_.inertia && !forces_->has_history(); }
+  bool is_quasi_static() const noexcept override { return !parameters_.inertia; }
   const VectorX& displacement() const noexcept override { return u_; }
   const VectorX& velocity() const noexcept override { return v_; }
   bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
@@ -107,6 +108,10 @@ class QuasiNewtonMotion final : public TissueMotion {
   double balance(VectorX& residual) noexcept;
   /// Starts the method at u_, without an evaluation of the forces when they are known there.
   double start_at_state() noexcept;
+  /// Starts the method at the state that is predicted by linear elasticity when supports move, unless its potential is
+  /// higher than `least`. Moved alone, they compress only the elements next to them.
+  void predict(double least) noexcept;
+  bool supports_move() const noexcept;
   /// As in ImplicitDynamics: moves supports in parts where the body must follow each part. Ends at x_.
   bool move_supports() noexcept;
   static constexpr int most_support_parts = 64;
@@ -141,7 +146,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   VectorX rotated_, noise_;  // displacement by a rotation, and the forces computed there; empty when errors are given
   VectorX u_, v_, a_, load_, step_load_;
   VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
-  VectorX x_, kept_load_, kept_free_;
+  VectorX x_, kept_load_, kept_free_, moved_;
   DeformationReport deformation_;
   /// Forces at u_, while they are known.
   struct Known {
@@ -156,7 +161,8 @@ class QuasiNewtonMotion final : public TissueMotion {
   RoundingErrors floor_;
   double length_ = 0.0;  // of the factor; infinite: without inertia
   bool stepped_ = false;
-  bool shorten_ = false;  // the next step
+  bool stretched_ = false;  // how the factor follows the body; changes when a step ends far from its solution
+  bool shorten_ = false;    // the next step
 };
 
 }}  // namespace palpate

@@ -61,6 +61,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
       x_(body_.conditions.free_count()),
       kept_load_(u_),
       kept_free_(x_),
+      moved_(x_),
       known_{u_, 0.0, {}, false},
       prescribed_(body_.conditions.prescribed) {
   parameters.require_usable();
@@ -110,7 +111,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   if (!ImplicitStep::is_length(h) || !set_length(parameters_.inertia ? h : infinity)) return done;
   factor_->take_renewed();  // the method's pairs stay valid
   forces_->begin_step(h);
-  factor_->rotate(u_);
+  factor_->rotate(u_, stretched_);
   prescribed_ = body_.conditions.prescribed;
   if (parameters_.inertia) step_.coast(u_, v_, a_);
   const double still = start_at_state();
@@ -119,6 +120,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
     body_.conditions.gather(step_.predicted(), x_);
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
+  if (supports_move()) predict(method_.potential());
   if (!move_supports()) return done;
   const bool shorten = std::exchange(shorten_, false);
   const int most = shorten ? std::min(parameters_.maximum_iterations, most_shortened) : parameters_.maximum_iterations;
@@ -134,13 +136,39 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   accept();
   step_load_ = load_;
   stepped_ = true;
-  if (report_.iterations > few_iterations || !(report_.relative_residual <= parameters_.tolerance)) factor_->ask(u_);
+  const bool accurate = report_.relative_residual <= parameters_.tolerance;
+  if (report_.iterations > few_iterations || !accurate) factor_->ask(u_);
+  if (!accurate && !shorten) stretched_ = !stretched_;
   done = {true, {}, deformation_};
   done.relative_residual = report_.relative_residual;
   if (deformation_.inverted > 0) done.status.set(StatusFlag::inverted);
   if (deformation_.beyond_range > 0) done.status.set(StatusFlag::material_exceeded);
   if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);
   return done;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::supports_move() const noexcept {
+  for (Index dof = 0; dof < u_.size(); ++dof)
+    if (body_.conditions.is_constrained(dof) && u_[dof] != prescribed_[dof]) return true;
+  return false;
+}
+
+PALPATE_INLINE void QuasiNewtonMotion::predict(double least) noexcept {
+  kept_free_ = x_;
+  prescribed_ = u_;
+  start_at_state();
+  prescribed_ = body_.conditions.prescribed;
+  other_ = prescribed_ - u_;
+  for (const Index dof : body_.conditions.free_dofs) other_[dof] = 0.0;
+  factor_->apply(other_, full_);
+  VectorX& residual = method_.residual();
+  for (std::size_t k = 0; k < body_.conditions.free_dofs.size(); ++k)
+    residual[static_cast<Index>(k)] -= full_[body_.conditions.free_dofs[k]];
+  method_.respond(*this, residual, moved_);
+  x_ += moved_;
+  if (method_.start(*this, x_) <= least) return;
+  x_ = kept_free_;
+  method_.start(*this, x_);
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::move_supports() noexcept {
@@ -217,6 +245,7 @@ PALPATE_INLINE void QuasiNewtonMotion::set_state(const VectorX& u, const VectorX
     v_[dof] = constrained ? 0.0 : v[dof];
   }
   a_.setZero();
+  stretched_ = false;
   known_.valid = false;
   method_.forget();
 }

@@ -35,9 +35,10 @@ class RenewableFactor final : public StepFactor {
 
   /// Factorises at rest.
   bool set_mass(double mass) noexcept override;
-  void rotate(const VectorX& u) noexcept override { corotated_.update(u, front().rotation); }
+  void rotate(const VectorX& u, bool stretched = false) noexcept override;
   /// z is zero on constrained dofs.
   void solve(const VectorX& r, VectorX& z) noexcept override { corotated_.solve(*front().factor, r, z); }
+  void apply(const VectorX& x, VectorX& y) noexcept override { corotated_.apply(front().factor->matrix(), x, y); }
   bool is_uneven() const noexcept override { return is_uneven_; }
   void ask(const VectorX& u) noexcept override;
   void take_renewed() noexcept override;
@@ -54,7 +55,7 @@ class RenewableFactor final : public StepFactor {
     std::unique_ptr<TangentSolver> factor;
     std::vector<Matrix3> rotation;  // of the nodes
     double mass = 0.0;
-    bool usable = false;
+    bool usable = false, is_at_rest = false;
   };
   Shape& front() noexcept { return shapes_[front_]; }
   Shape& spare() noexcept { return shapes_[1 - front_]; }

@@ -54,8 +54,16 @@ PALPATE_INLINE bool RenewableFactor::set_mass(double mass) noexcept {
   made.factor->matrix().copy_values(stiffness_);
   if (mass > 0.0) made.factor->matrix().add_nodal(mass, lumped_);
   std::ranges::fill(made.rotation, Matrix3::Identity());
+  made.is_at_rest = true;
   made.usable = made.factor->factorise();
   return made.usable;
+}
+
+PALPATE_INLINE void RenewableFactor::rotate(const VectorX& u, bool stretched) noexcept {
+  if (stretched && front().is_at_rest)
+    corotated_.update_stretched(u);
+  else
+    corotated_.update(u, front().rotation);
 }
 
 PALPATE_INLINE void RenewableFactor::take_renewed() noexcept {
@@ -85,6 +93,7 @@ PALPATE_INLINE void RenewableFactor::renew() noexcept {
   if (!find_stiffness(made.factor->matrix())) return;  // the last factor stays in use
   if (made.mass > 0.0) made.factor->matrix().add_nodal(made.mass, lumped_);
   corotated_.fit(asked_, made.rotation);
+  made.is_at_rest = false;
   made.usable = made.factor->factorise();
 }
 

@@ -17,11 +17,13 @@ class StepFactor {
 
   /// Sets m [1/s^2]; factorises when it is new. Returns false without a factor.
   virtual bool set_mass(double mass) noexcept = 0;
-  /// Adapts the inverse to the displacement u [m]: rotations.
-  virtual void rotate(const VectorX& u) noexcept = 0;
+  /// Adapts the inverse to the displacement u [m]: by the rotations of nodes, or by their deformation gradients.
+  virtual void rotate(const VectorX& u, bool stretched = false) noexcept = 0;
   /// z = inverse times r. On constrained dofs r is zero, and z is not read.
   virtual void solve(const VectorX& r, VectorX& z) noexcept = 0;
 
+  /// y = the matrix times x, which may differ from zero on constrained dofs.
+  virtual void apply(const VectorX& x, VectorX& y) noexcept = 0;
   /// Whether some parts are much stiffer than others. Then the norm of forces does not show whether all are in
   /// equilibrium.
   virtual bool is_uneven() const noexcept = 0;

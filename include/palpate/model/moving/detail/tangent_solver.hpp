@@ -44,6 +44,8 @@ class TangentSolver {
   static constexpr int most_factorisations = 6;
   /// Factorises the free part with this shift, in one attempt; false when it is not positive definite.
   bool factorise_shifted(double shift) noexcept;
+  /// Forgets the last shift: later results then do not depend on earlier matrices.
+  void forget() noexcept { last_shift_ = 0.0; }
   /// Value added to the diagonal; 0 for a positive definite matrix.
   double shift() const noexcept { return shift_; }
 
