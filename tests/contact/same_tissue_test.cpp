@@ -25,7 +25,7 @@ constexpr double radius = 8e-3;
 
 /// Changes nothing.
 template <class Tissue>
-struct Same : TissueAdaptor<Tissue> {
+struct Unchanged : TissueAdaptor<Tissue> {
   using TissueAdaptor<Tissue>::TissueAdaptor;
 };
 /// Changes the compliance.
@@ -74,10 +74,10 @@ void check_still(T& tissue, const ToolList& tools, std::span<const ToolState> pa
   const auto laws = [&](auto& same) {
     CHECK(testing::describe(testing::same_tissue_laws(tissue, same, tools, path, options)) == "");
   };
-  Same<T> adaptor(tissue);
-  Same<Same<T>> twice(adaptor);
+  Unchanged<T> adaptor(tissue);
+  Unchanged<Unchanged<T>> twice(adaptor);
   TissueGroup group(tissue), group_of_adaptor(twice), group_of_group(group);
-  Same<TissueGroup> adaptor_of_group(group);
+  Unchanged<TissueGroup> adaptor_of_group(group);
   laws(adaptor);
   laws(twice);
   laws(group);
@@ -176,7 +176,7 @@ TEST_CASE("in a group of two, each member keeps what is known of its errors", "[
 TEST_CASE("tissue that moves or is cut is the same through adaptors", "[contact][tissue]") {
   const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height, 3e-3, 200);
   const auto check = [&](auto& tissue, auto& second) {
-    Same<std::remove_reference_t<decltype(second)>> adaptor(second);
+    Unchanged<std::remove_reference_t<decltype(second)>> adaptor(second);
     CHECK(testing::describe(testing::same_tissue_laws(tissue, adaptor, SphereTool{.radius = radius}, path)) == "");
   };
   const Mesh<Tet4> mesh = box_tet4(Vector3(0.03, 0.03, test::pad_height), {4, 4, 3});
