@@ -120,8 +120,9 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Minimises the static potential at the present loads from u_, in rounds between which nodes are rotated. Returns
   /// the relative residual that is left.
   double find_equilibrium() noexcept;
-  /// The same in parts of the loads, from u_ without them.
-  double follow_loads();
+  double equilibrium_tolerance() const noexcept;
+  /// The same in parts of the loads, from u_ without them; each part to a relative residual of `most`.
+  double follow_loads(double most);
   /// Goes towards that minimum without a line search, each iteration from newly rotated nodes: in a straight step stiff
   /// parts may turn by small angles only, because it stretches them; here the next iteration removes the stretch.
   /// Leaves u_ when it does not arrive.

@@ -285,11 +285,12 @@ PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   const VectorX start = u_;
   prescribed_ = body_.conditions.prescribed;
   double left = find_equilibrium();
-  if (!(left <= enough * parameters_.tolerance)) {
+  const double most = std::max(equilibrium_tolerance(), enough * parameters_.tolerance);
+  if (!(left <= most)) {
     u_ = start;
-    left = follow_loads();
+    left = follow_loads(most);
   }
-  if (!(left <= enough * parameters_.tolerance))
+  if (!(left <= most))
     raise(SetupErrorKind::not_converged,
           "no equilibrium was found under the loads: forces of " + number(left) + " of them are left",
           is_uneven() ? "Reduce the loads or the contrast of stiffness, take QuasiNewton<double>, or set settle = false"
@@ -300,23 +301,26 @@ PALPATE_INLINE VectorX QuasiNewtonMotion::settle() {
   return u_;
 }
 
+PALPATE_INLINE double QuasiNewtonMotion::equilibrium_tolerance() const noexcept {
+  return std::max(1e-9, 100.0 * forces_->rounding());
+}
+
 PALPATE_INLINE double QuasiNewtonMotion::find_equilibrium() noexcept {
   constexpr int most_rounds = 50, most_in_round = 20;
-  const double tolerance = std::max(1e-9, 100.0 * forces_->rounding());
   QuasiNewtonReport report;
   for (int round = 0; round < most_rounds && !report.converged; ++round) {
     factor_->rotate(u_);
     method_.forget();
     body_.conditions.gather(u_, x_);
     method_.start(*this, x_);
-    report = method_.solve(*this, x_, {.maximum_iterations = most_in_round, .tolerance = tolerance});
+    report = method_.solve(*this, x_, {.maximum_iterations = most_in_round, .tolerance = equilibrium_tolerance()});
     body_.conditions.place(x_, prescribed_, u_);
     if (report.evaluations == 0) break;  // no progress
   }
   return report.relative_residual;
 }
 
-PALPATE_INLINE double QuasiNewtonMotion::follow_loads() {
+PALPATE_INLINE double QuasiNewtonMotion::follow_loads(double most) {
   constexpr double smallest = 1.0 / 256.0;
   const VectorX load = load_, from = u_;
   double reached = 0.0, part = 0.125, left = infinity;
@@ -327,7 +331,7 @@ PALPATE_INLINE double QuasiNewtonMotion::follow_loads() {
     prescribed_ = from + next * (body_.conditions.prescribed - from);
     relax();
     left = find_equilibrium();
-    const bool found = left <= enough * parameters_.tolerance;
+    const bool found = left <= most;
     if (found) {
       reached = next;
       part *= 2.0;
