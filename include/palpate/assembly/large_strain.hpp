@@ -92,17 +92,22 @@ class LargeStrain final : public ElasticForces {
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
       bool inverted = false, beyond = false;
+      detail::MostStrained<PointGeometry<E>> most;
       for (const PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         inverted = !observe(determinant(f), e, report) || inverted;
         const auto& material = material_at(e, g);
-        beyond = beyond || detail::is_beyond_range(material, f);
+        if constexpr (requires { material.is_beyond_range(f); })
+          beyond = beyond || material.is_beyond_range(f);
+        else
+          most.note(f, g);
         if (material.admits(f))
           fe.noalias() += g.volume * matrix3(material.stress(f)) * g.gradient.transpose();
         else
           report.admissible = false;
       }
       report.inverted += inverted ? 1 : 0;
+      if (most.at != nullptr) beyond = beyond || detail::is_beyond_range(material_at(e, *most.at), most.deformation);
       report.beyond_range += beyond ? 1 : 0;
       for (int a = 0; a < E::nodes; ++a) all.template segment<3>(3 * Index{mesh().element_node(e, a)}) += fe.col(a);
     }

@@ -5,41 +5,44 @@
 #include <palpate/core/setup_error.hpp>
 
 #include <atomic>
+#include <memory>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Whether a servo uses a tissue that can have one only: its surface changes between ticks, and the forces that a tick
-/// leaves replace those of the last one. A tissue with a function `TissueClaim& claim() noexcept` is refused to a
+/// Whether a servo uses a tissue that can have one only: its surface or compliance changes between ticks, and the forces
+/// that a tick leaves replace those of the last one. A tissue with a function `TissueClaim& claim() noexcept` is refused to a
 /// second servo. Adaptors forward that of the wrapped tissue.
 class TissueClaim {
  public:
-  /// Throws unsupported when another servo has taken it.
-  void take() {
-    if (taken_.exchange(true))
-      raise(SetupErrorKind::unsupported, "this tissue moves or is cut, and another servo or session uses it",
+  using Taken = std::shared_ptr<std::atomic<bool>>;
+
+  /// True until it is set to false, also when the tissue is gone by then. Throws unsupported when another servo has
+  /// taken the tissue.
+  Taken take() {
+    if (taken_->exchange(true))
+      raise(SetupErrorKind::unsupported,
+            "this tissue keeps a state between ticks (it moves, is cut or stiffens), and another servo or session uses it",
             "Give one servo several tools, or destroy the other one first");
+    return taken_;
   }
-  void release() noexcept { taken_.store(false); }
 
  private:
-  std::atomic<bool> taken_{false};
+  Taken taken_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 /// Holds the claim on a tissue, if it has one, during its lifetime.
 class ClaimedTissue {
  public:
   /// Throws as TissueClaim::take.
-  explicit ClaimedTissue(TissueClaim* claim) : claim_(claim) {
-    if (claim_ != nullptr) claim_->take();
-  }
+  explicit ClaimedTissue(TissueClaim* claim) : taken_(claim != nullptr ? claim->take() : nullptr) {}
   ~ClaimedTissue() {
-    if (claim_ != nullptr) claim_->release();
+    if (taken_ != nullptr) taken_->store(false);
   }
   ClaimedTissue(const ClaimedTissue&) = delete;
   ClaimedTissue& operator=(const ClaimedTissue&) = delete;
 
  private:
-  TissueClaim* claim_;
+  TissueClaim::Taken taken_;
 };
 
 }}  // namespace palpate

@@ -240,8 +240,10 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
 PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body,
                                                          const BodyContacts& contacts, std::size_t t,
                                                          const ContactTool& tool) const noexcept {
-  if (body.accuracy == nullptr || !(tool.half_length > 0.0) || contacts.rows.empty()) return false;
-  const int vertex = body.first + contacts.rows.front().vertices[0];
+  if (body.accuracy == nullptr || !(tool.half_length > 0.0)) return false;
+  const auto own = std::ranges::find(contacts.rows, static_cast<int>(t), &Contact::tool);
+  if (own == contacts.rows.end()) return false;
+  const int vertex = body.first + own->vertices[0];
   const double modulus = surface.material(surface.triangles_at(vertex).front()).modulus;
   const double depth = std::min(contacts.depth, tool.radius),
                force = 4.0 / 3.0 * modulus * std::sqrt(tool.radius * depth) * depth;

@@ -53,9 +53,9 @@ class CuttableTissue : public ModelBase {
   /// memory is short: the body is then that before the orders, which are dropped, or, when its new compliance was
   /// complete, that after them, which the next call publishes.
   bool process_cuts() {
+    const CutServed::Call call(served_);  // also while it waits for a change of the loads
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
-    const CutServed::Call call(served_);
     const CutOrders::Taken taken = orders_.take();
     struct Done {
       CuttableTissue& tissue;

@@ -7,6 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/material/detail/material_range.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -14,16 +15,24 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Counts the lanes of every batch whose F is beyond the range. Where the material knows a volume ratio above which
 /// there are none, every evaluation examines all batches, most of them by one comparison. For other materials an
-/// examination takes 2 us: an evaluation examines every 128th batch, in turn, and the others keep their count.
+/// examination takes 2 us: an evaluation examines about 64 batches, in turn, and the others keep their count. Those
+/// that are beyond the range are examined more often, so that the count falls soon after they are back.
 template <class M, class S, int N>
 class RangeWatch {
  public:
   static constexpr bool by_volume = RangedByVolume<M>;
 
-  void resize(std::size_t batches) { beyond_.assign(batches, 0); }
+  void resize(std::size_t batches) {
+    beyond_.assign(batches, 0);
+    period_ = std::clamp<std::size_t>(batches / examined_batches, 1, longest_period);
+  }
   /// Begins an evaluation.
-  void next_turn() noexcept { turn_ = (turn_ + 1) % period; }
-  bool is_turn_of(std::size_t batch) const noexcept { return by_volume || batch % period == turn_; }
+  void next_turn() noexcept { ++turn_; }
+  bool is_turn_of(std::size_t batch) const noexcept {
+    if constexpr (by_volume) return true;
+    const std::size_t period = beyond_[batch] > 0 ? std::min(period_, shortest_period) : period_;
+    return (batch + turn_) % period == 0;
+  }
 
   /// Lanes without volume are empty.
   PALPATE_ALWAYS_INLINE void observe(std::size_t batch, const M& material, const Tensor3<Lanes<S, N>>& f,
@@ -39,7 +48,7 @@ class RangeWatch {
   Index count() const noexcept { return count(0, beyond_.size()); }
 
  private:
-  static constexpr std::size_t period = 128;
+  static constexpr std::size_t examined_batches = 64, longest_period = 128, shortest_period = 8;
 
   void examine(std::size_t batch, const M& material, const Tensor3<Lanes<S, N>>& f,
                const Lanes<S, N>& volume) noexcept {
@@ -63,7 +72,7 @@ class RangeWatch {
   }
 
   std::vector<std::uint8_t> beyond_;  // by batch
-  std::size_t turn_ = 0;
+  std::size_t period_ = 1, turn_ = 0;
 };
 
 }}}  // namespace palpate::detail

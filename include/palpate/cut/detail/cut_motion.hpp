@@ -157,8 +157,11 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   }
   /// Some elements, with all nodes.
   HyperelasticBody<E, M> part(const Mesh<E>& mesh, const std::vector<Index>& elements) const {
-    HyperelasticBody<E, M> made{{{}, body_.rest.elasticity, body_.rest.density, body_.rest.initial_strain},
-                                body_.materials};
+    HyperelasticBody<E, M> made;
+    made.rest.elasticity = body_.rest.elasticity;
+    made.rest.density = body_.rest.density;
+    made.rest.initial_strain = body_.rest.initial_strain;
+    made.materials = body_.materials;
     Mesh<E>& of_part = made.rest.mesh;
     of_part.positions = mesh.positions;
     of_part.region_names = mesh.region_names;

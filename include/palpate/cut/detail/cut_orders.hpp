@@ -48,11 +48,17 @@ class CutServed {
  public:
   static constexpr int patience = 500;  ///< ticks
 
-  /// A call of the function that processes orders; one at a time.
+  /// A call of the function that processes orders.
   class Call {
    public:
-    explicit Call(CutServed& served) noexcept : served_(served) { served_.step(); }
-    ~Call() { served_.step(); }
+    explicit Call(CutServed& served) noexcept : served_(served) {
+      served_.in_progress_.fetch_add(1, std::memory_order_acq_rel);
+      served_.report_failed(false);
+    }
+    ~Call() {
+      served_.count_.fetch_add(1, std::memory_order_release);
+      served_.in_progress_.fetch_sub(1, std::memory_order_acq_rel);
+    }
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
@@ -65,20 +71,15 @@ class CutServed {
   /// the failure of a worker until the next call.
   bool is_stalled(bool orders_wait) noexcept {
     const std::uint64_t count = count_.load(std::memory_order_acquire);
-    if (!orders_wait || count != seen_ || count % 2 != 0) waited_ = 0;
+    if (!orders_wait || count != seen_ || in_progress_.load(std::memory_order_acquire) > 0) waited_ = 0;
     seen_ = count;
     if (orders_wait && waited_ <= patience) ++waited_;
     return waited_ > patience || failed_.load(std::memory_order_relaxed);
   }
 
  private:
-  /// Odd while a call is in progress.
-  void step() noexcept {
-    count_.fetch_add(1, std::memory_order_release);
-    report_failed(false);
-  }
-
-  std::atomic<std::uint64_t> count_{0};
+  std::atomic<int> in_progress_{0};
+  std::atomic<std::uint64_t> count_{0};  // of calls that have ended
   std::atomic<bool> failed_{false};
   std::uint64_t seen_ = 0;  // by the thread that ticks
   int waited_ = 0;          // ticks

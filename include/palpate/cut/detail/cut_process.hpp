@@ -178,7 +178,10 @@ class CutProcess : public CutState<E> {
   CutOrder order_of(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
     if (!taken.sweeps.empty()) {
       if (std::exchange(is_due(Check::inside), false)) system_.recover();
-      if (swept_.size() == 0 || report_.displacement <= largest_linear_displacement) swept_ = system_.displacement();
+      if (swept_.size() == 0 || report_.displacement <= largest_linear_displacement) {
+        VectorX swept = system_.displacement();  // an assignment that finds no memory would leave it broken
+        swept_.swap(swept);
+      }
     }
     const auto swept = [&](NodeId node) {
       NodeId known = node;

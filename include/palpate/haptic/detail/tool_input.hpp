@@ -110,7 +110,7 @@ class ToolInput {
   Vector3 outside_ = Vector3::Zero();
   Matrix3 outside_rotation_ = Matrix3::Identity();
   bool needs_press_ = false;  // after a loss or jump: no grasp until the button is released and pressed again
-  bool readable_ = false, restarted_ = false, rotates_;
+  bool readable_ = false, was_readable_ = false, restarted_ = false, rotates_;
   std::uint32_t grasp_buttons_;
   Status status_;
 };

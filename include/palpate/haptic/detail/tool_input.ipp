@@ -62,7 +62,8 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
 }
 
 PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
-  if (has_news || !(news_ <= time_)) news_ = time_;
+  const bool returned = readable_ && !std::exchange(was_readable_, readable_);  // the tool's time stood still
+  if (has_news || returned || !(news_ <= time_)) news_ = time_;
 }
 
 PALPATE_INLINE void ToolInput::set_clearance(std::uint64_t revision, const Vector3& position,

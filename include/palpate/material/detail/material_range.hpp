@@ -35,6 +35,12 @@ concept RangedByVolume = requires(const M& m, const Tensor3<double>& f) {
 };
 // clang-format on
 
+/// |F^T F - I|^2, for the deviation from rest.
+inline double square_of_strain(const Tensor3<double>& f) noexcept {
+  const Tensor3<double> strain = plus_identity(transpose_product(f, f), -1.0);
+  return contract(strain, strain);
+}
+
 /// Whether F is beyond the range of a material: its own `is_beyond_range(F)`, or where it has none, whether F is
 /// clearly deformed, and collapsed or not stable. False for deformations that the material does not admit or that
 /// are inverted, which are reported as such.
@@ -43,14 +49,30 @@ bool is_beyond_range(const M& material, const Tensor3<double>& f) noexcept {
   if constexpr (requires { material.is_beyond_range(f); }) {
     return material.is_beyond_range(f);
   } else {
-    const Tensor3<double> strain = plus_identity(transpose_product(f, f), -1.0);
-    if (!(contract(strain, strain) > examined_strain)) return false;
+    if (!(square_of_strain(f) > examined_strain)) return false;
     const double j = determinant(f);
     if (!(j > 0.0 && material.admits(f))) return false;
     if (j < collapsed_volume && contract(material.stress(f), f) > 0.0) return true;
     return !is_stable(f, material.tangent(f));
   }
 }
+
+/// The point of an element with the largest strain. Without a rule of its own for its range a material is examined
+/// there only: an examination takes 2 us.
+template <class Point>
+struct MostStrained {
+  const Point* at = nullptr;
+  Tensor3<double> deformation{};
+  double square = examined_strain;
+
+  void note(const Tensor3<double>& f, const Point& point) noexcept {
+    const double here = square_of_strain(f);
+    if (!(here > square)) return;
+    square = here;
+    at = &point;
+    deformation = f;
+  }
+};
 
 }}}  // namespace palpate::detail
 

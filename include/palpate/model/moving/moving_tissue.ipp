@@ -3,6 +3,7 @@
 
 #include <palpate/model/moving/moving_tissue.hpp>
 
+#include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
@@ -222,18 +223,20 @@ PALPATE_INLINE void MovingTissue::restart() {
 
 PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
                                                  const std::vector<Vector3>& positions) {
+  // Swapped, not assigned: a vector whose assignment finds no memory would be broken.
   VectorX applied = applied_load(loaded_), load = applied;
   const Vector3 own = local(gravity(), pose());
   for (Index i = 0; i < mass.size(); ++i) add_node_vector(load, i, mass[i] * own);
+  VectorX full = load, response = VectorX::Zero(load.size()), nodal_mass = mass;
   NodalRotations rotations(pattern, positions, surface.nodes);
   applied_.swap(applied);
   load_.swap(load);
-  full_ = load_;
-  response_ = VectorX::Zero(load_.size());
+  full_.swap(full);
+  response_.swap(response);
   rotations_ = std::move(rotations);
   was_slit_ = was_slit_ || mass.size() > mass_.size();
   loads_changed_ = true;  // a cut moves vertices, too
-  mass_ = mass;
+  mass_.swap(nodal_mass);
   split_ = detail::SplitVertices(surface.parent, nodes_.size(),
                                  [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; });
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
@@ -380,18 +383,22 @@ PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
-  if (view.number != changed_.number) {  // a view from before a cut
-    NearCompliance near = std::move(view.near);
-    view = changed_;
-    near.resize(nodes_.size(), most_near, most_pressed);
-    view.near = std::move(near);
-  }
+  VectorX& drawn = drawn_.back();
+  const auto make_room = [&] {  // after a cut
+    if (view.number != changed_.number) {
+      View made = changed_;
+      made.near.resize(nodes_.size(), most_near, most_pressed);
+      view = std::move(made);
+    }
+    if (drawn.size() != motion_->displacement().size()) VectorX(motion_->displacement()).swap(drawn);
+  };
+  if (!detail::attempt(make_room)) return;  // no memory: the next step tries again
   update_view(view);
   view.surface.move_to(view.free, ++views_made_);
   view.surface.expect(view.pressed, {used_.item.data(), used_.count});
   view.status = status | changed_.status;
   views_.publish();
-  drawn_.back() = motion_->displacement();
+  drawn = motion_->displacement();
   drawn_.publish();
 }
 

@@ -82,6 +82,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   }
 
   // TissueModel
+  TissueClaim& claim() noexcept { return stiffened_.claim(); }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     stiffened_.end_tick(forces);
     note_scale();

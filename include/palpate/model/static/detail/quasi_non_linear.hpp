@@ -62,6 +62,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   }
   QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
 
+  TissueClaim& claim() noexcept { return claim_; }
   void end_tick(std::span<const VertexForce> forces) noexcept {
     follow(forces);
     this->tissue().end_tick(forces);
@@ -136,6 +137,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   Vector3 axis_{0.0, 0.0, 1.0};
   Matrix3 scale_;
   std::uint64_t revision_ = 0;
+  TissueClaim claim_;
 };
 
 }}  // namespace palpate
