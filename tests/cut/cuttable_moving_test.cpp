@@ -4,6 +4,7 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
+#include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
@@ -187,6 +188,35 @@ TEST_CASE("a blade is the only tool on moving tissue", "[cut][moving][blade][ext
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(tissue.contact_surface().vertex_count() > vertices);
   CHECK(servo.blade()->area() > 1e-4);
+}
+
+TEST_CASE("moving tissue survives lack of memory in a cut", "[cut][moving][extreme][E10]") {
+  if (!testing::allocations_are_counted()) return;
+  const BladeSweep slit{{0.0201, -1, 0.01}, {0.0201, 1, 0.01}, {0.0201, -1, 1}, {0.0201, 1, 1}};
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4({0.04, 0.04, 0.02}, {2, 2, 2}));
+  Smooth whole(mesh, Scene().fix("z0").touch("z1"), flesh, {}, {.inertia = false});
+  whole.cut(slit);
+  whole.advance();
+  const Index size = whole.displacement().size();
+  bool was_refused = true;
+  for (std::uint64_t n = 0; was_refused; n += 1 + n / 50) {
+    INFO("allocation " << n << " fails");
+    Smooth tissue(mesh, Scene().fix("z0").touch("z1"), flesh, {}, {.inertia = false});
+    tissue.cut(slit);
+    const std::uint64_t refused = testing::detail::heap_calls_now().failed;
+    {
+      const testing::FailingHeap failing(n);
+      tissue.advance();
+    }
+    was_refused = testing::detail::heap_calls_now().failed > refused;
+    tissue.advance();
+    CHECK(tissue.displacement().allFinite());
+    tissue.reset();
+    tissue.cut(slit);
+    tissue.advance();
+    CHECK(tissue.displacement().size() == size);
+    CHECK_FALSE(tissue.cut_report().failed);
+  }
 }
 
 TEST_CASE("burning and slitting under a tool: forces continue, and end as in a model of what is left",

@@ -11,11 +11,14 @@
 
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "refused.hpp"
 
@@ -126,6 +129,32 @@ TEST_CASE("tissue that moves is refused to a second servo", "[haptic][refused]")
   // A servo that is refused for another reason leaves no claim.
   CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(model, SphereTool{.radius = -1.0}));
   CHECK_NOTHROW(HapticServo(model, SphereTool{.radius = 0.012}));
+}
+
+TEST_CASE("a servo that outlives its tissue does not touch the claim of another", "[haptic][refused]") {
+  struct Block {
+    Moving model = small_block();
+  };
+  std::optional<Block> block(std::in_place);
+  auto servo = std::make_unique<HapticServo>(block->model, SphereTool{.radius = 0.012});
+  block.emplace();  // at the same place
+  const HapticServo other(block->model, SphereTool{.radius = 0.012});
+  servo.reset();
+  CHECK_REFUSED(SetupErrorKind::unsupported, HapticServo(block->model, SphereTool{.radius = 0.012}));
+}
+
+TEST_CASE("a device that returns is no sign of a stalled tissue", "[haptic][worker][extreme]") {
+  Moving model = small_block();
+  HapticServo servo(model, SphereTool{.radius = 0.012});
+  for (int k = 0; k < 2300; ++k) {
+    INFO(k);
+    if (k % 16 == 0) model.advance();
+    ToolState state = above(5000.0 + 1e-3 * k);
+    state.valid = !(k < 3 || (k >= 1000 && k < 2005));
+    const Status status = servo.tick(state).status;
+    REQUIRE_FALSE(status.has(StatusFlag::stalled_tissue));
+    if (state.valid) REQUIRE_FALSE(status.has(StatusFlag::stale));
+  }
 }
 
 TEST_CASE("tissue whose steps nobody makes is flagged as such, not only as stale", "[haptic][worker][extreme]") {
