@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -62,7 +63,8 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
 }
 
 PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
-  const bool returned = readable_ && !std::exchange(was_readable_, readable_);  // the tool's time stood still
+  const bool was_readable = std::exchange(was_readable_, readable_);
+  const bool returned = readable_ && !was_readable;  // the tool's time stood still meanwhile
   if (has_news || returned || !(news_ <= time_)) news_ = time_;
 }
 
