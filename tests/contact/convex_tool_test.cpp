@@ -223,7 +223,8 @@ TEST_CASE("a hull of one point is a sphere, of two points a capsule", "[contact]
   INFO("half length " << half << ", friction " << friction << ", difference " << worst << " N of " << largest);
   CHECK(largest > 0.01);
   // Friction is solved to 1e-4: a capsule at poses that differ by rounding has forces that differ by as much as here.
-  const double tolerance = friction > 0.0 ? 2e-2 : 1e-9;
+  // Without it, a point that penetrates by less than 1e-5 of the deepest push may have a row in one session only.
+  const double tolerance = friction > 0.0 ? 2e-2 : 1e-7;
   CHECK(worst <= tolerance * largest);
   CHECK(worst_torque <= tolerance * largest * (radius + half));
 }

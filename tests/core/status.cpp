@@ -81,7 +81,7 @@ TEST_CASE("counters add one per set flag and tick", "[core][status]") {
   CHECK(counters[StatusFlag::material_exceeded] == 100);
   CHECK(counters[StatusFlag::stale] == 0);
   CHECK(counters.at(1) == 500);
-  CHECK(counters.at(18) == 100);
+  CHECK(counters.at(19) == 100);
   CHECK(counters.at(status_flag_count - 1) == 0);
   STATIC_REQUIRE(noexcept(counters.count(Status{})));
   std::ostringstream out;

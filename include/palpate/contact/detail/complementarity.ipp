@@ -127,16 +127,21 @@ PALPATE_INLINE bool ComplementarityProblem::descend() noexcept {
 PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
   solve_active();
   double length = 1.0;
+  int shortest = -1;  // leaves also where rounding says that it does not quite vanish
   for (int p = 0; p < order_count_; ++p) {
     const double from = lambda[at(order_[at(p)])];
-    if (answer_[at(p)] < 0.0 && !bilateral[at(order_[at(p)])])
-      length = std::min(length, from / (from - answer_[at(p)]));
+    if (!(answer_[at(p)] < 0.0) || bilateral[at(order_[at(p)])]) continue;
+    const double own = from / (from - answer_[at(p)]);
+    if (!(own < length)) continue;
+    length = own;
+    shortest = p;
   }
   bool whole = true;
   for (int p = order_count_ - 1; p >= 0; --p) {
     const int i = order_[at(p)];
     const double from = lambda[at(i)];
-    const bool leaves = !bilateral[at(i)] && answer_[at(p)] < 0.0 && from <= length * (from - answer_[at(p)]);
+    const bool vanishes = !bilateral[at(i)] && answer_[at(p)] < 0.0 && from <= length * (from - answer_[at(p)]);
+    const bool leaves = p == shortest || vanishes;
     lambda[at(i)] = leaves ? 0.0 : from + length * (answer_[at(p)] - from);
     if (!leaves) continue;
     active_[at(i)] = 0;

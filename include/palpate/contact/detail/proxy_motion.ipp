@@ -88,15 +88,16 @@ PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surf
 }
 
 PALPATE_INLINE void ProxyMotion::note_alternation(Tools tools) noexcept {
-  constexpr double lasting = 0.9;
-  double back = 0.0, before = 0.0;
+  constexpr double lasting = 0.9, negligible = 1e-6;  // of the change before, of the force
+  double back = 0.0, before = 0.0, all = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const Vector3 change = tools[t].force - start_force_[t];
     back -= change.dot(change_[t]);
     before += change_[t].squaredNorm();
+    all += tools[t].force.squaredNorm();
     change_[t] = change;
   }
-  alternates_ = arrived_ && changed_ && back > lasting * before;
+  alternates_ = arrived_ && changed_ && back > std::max(lasting * before, negligible * negligible * all);
   changed_ = arrived_;
 }
 
