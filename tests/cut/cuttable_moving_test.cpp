@@ -219,6 +219,30 @@ TEST_CASE("moving tissue survives lack of memory in a cut", "[cut][moving][extre
   }
 }
 
+TEST_CASE("the last tick before a reset may name vertices that the reset drops", "[cut][moving][haptic]") {
+  using namespace one_session;
+  Smooth tissue(block(), constrained_block(), flesh, {}, {.inertia = false});
+  const VectorX start = tissue.displacement();
+  const int vertices = tissue.contact_surface().vertex_count();
+  HapticServo servo(tissue, SphereTool{radius}, stiff_device());
+  tissue.cut(BladeSweep{{0.031, -1, 0.01}, {0.031, 1, 0.01}, {0.031, -1, 1}, {0.031, 1, 1}});
+  for (int k = 0; k < 100; ++k) {
+    if (k % 10 == 9) tissue.advance();
+    ToolState state;
+    state.time = 1e-3 * k;
+    state.position = {0.031, 0.03, size[2] + radius - 4e-5 * k};
+    REQUIRE(servo.tick(state).force().allFinite());
+  }
+  REQUIRE(tissue.contact_surface().vertex_count() > vertices);
+  tissue.reset();
+  servo.reset();  // reports the end of a press on the surface with the cut
+  tissue.advance();
+  CHECK(tissue.displacement().size() == start.size());
+  CHECK((tissue.displacement() - start).norm() <= 1e-9);
+  tissue.begin_tick();
+  CHECK(tissue.contact_surface().vertex_count() == vertices);
+}
+
 TEST_CASE("burning and slitting under a tool: forces continue, and end as in a model of what is left",
           "[cut][moving][haptic][extreme][F3]") {
   using namespace one_session;

@@ -127,7 +127,7 @@ PALPATE_INLINE bool ComplementarityProblem::descend() noexcept {
 PALPATE_INLINE bool ComplementarityProblem::step() noexcept {
   solve_active();
   double length = 1.0;
-  int shortest = -1;  // leaves also where rounding says that it does not quite vanish
+  int shortest = -1;  // its force vanishes, also where rounding leaves a rest of it
   for (int p = 0; p < order_count_; ++p) {
     const double from = lambda[at(order_[at(p)])];
     if (!(answer_[at(p)] < 0.0) || bilateral[at(order_[at(p)])]) continue;

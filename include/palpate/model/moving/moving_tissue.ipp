@@ -99,6 +99,17 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   report_failed(false);
   if (!prepare_step()) return {};
   pressing_.update();
+  if (Forces& given = pressing_.front();
+      given.number != changed_.number) {  // of a tick before a reset that drops vertices
+    const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
+    const auto keep = [](auto& list, std::size_t& count, const auto& drops) {
+      count = static_cast<std::size_t>(
+          std::remove_if(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count), drops) - list.begin());
+    };
+    keep(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
+    keep(given.pressed.item, given.pressed.count, is_gone);
+    keep(given.near.item, given.near.count, is_gone);
+  }
   full_.setZero();
   add(pressing_.front(), 1.0, full_);
   add(used_, -1.0, full_);
