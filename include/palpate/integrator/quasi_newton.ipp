@@ -18,8 +18,8 @@ PALPATE_INLINE QuasiNewtonMethod::QuasiNewtonMethod(Index size, int memory)
   weight_.setZero(memory);
 }
 
-PALPATE_INLINE void QuasiNewtonMethod::remember(const VectorX& from, const VectorX& to,
-                                                const VectorX& residual_there, double least) noexcept {
+PALPATE_INLINE void QuasiNewtonMethod::remember(const VectorX& from, const VectorX& to, const VectorX& residual_there,
+                                                double least) noexcept {
   auto step = steps_.col(next_), change = changes_.col(next_);
   step = to - from;
   change = residual_ - residual_there;

@@ -8,8 +8,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace io::medit {
 
 /// Reads a whole file: text, or binary of either byte order, versions 1 to 4. References of vertices, edges, faces and
 /// solids other than 0 are tags: groups "point 4", "curve 3", "surface 2" and regions "volume 1". Sections may have any
-/// order, those of cells may be repeated; those without cells are skipped. Second-order nodes must be in the order of VTK. A text without End gets a
-/// note.
+/// order, those of cells may be repeated; those without cells are skipped. Second-order nodes must be in the order of
+/// VTK. A text without End gets a note.
 ///
 /// Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported (two dimensions, other orders of
 /// nodes), with file and line, in binary files with the byte. Linear in the size of the text; counts are compared with
