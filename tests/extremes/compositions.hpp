@@ -98,6 +98,17 @@ class ScriptedDevice {
 };
 static_assert(HapticDevice<ScriptedDevice>);
 
+template <class Model>
+Model make_block() {
+  using Material = typename Model::MaterialType;
+  const auto mesh = copy_mesh<typename Model::ElementType>(box_tet4(size, {5, 5, 3}));
+  const Scene scene = Scene().fix("z0").touch("z1");
+  if constexpr (requires(Material m) { m.base; })
+    return Model(mesh, scene, Material{{5e3, 0.4, 1000.0}});
+  else
+    return Model(mesh, scene, Material{5e3, 0.4, 1000.0});
+}
+
 /// One model, as the tissue of a session or as a member of a group.
 template <class Model>
 struct Body {
@@ -105,11 +116,10 @@ struct Body {
   std::optional<Model> second;
   std::optional<TissueGroup> group;
 
-  template <class Make>
-  Body(const Make& make, bool grouped) : model(make()) {
+  explicit Body(bool grouped) : model(make_block<Model>()) {
     if constexpr (detail::HooksOnlyPrefetch<Model>) {
       if (!grouped) return;
-      second.emplace(make());
+      second.emplace(make_block<Model>());
       second->set_pose(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.0)));
       group.emplace(model, *second);
     }
@@ -148,8 +158,8 @@ void run_own_loop(Tissue& tissue, const Tools& tools, const ServoOptions& option
 
 /// Two runs of a session, with a reset of the tissue in between.
 template <class Tissue>
-void run_session(Tissue& tissue, const Tools& tools, const ServoOptions& given,
-                 const std::function<void(int)>& between, const std::function<void()>& reset) {
+void run_session(Tissue& tissue, const Tools& tools, const ServoOptions& given, const std::function<void(int)>& between,
+                 const std::function<void()>& reset) {
   std::array<ScriptedDevice, most_tools> devices;
   for (std::size_t t = 0; t < tools.list.size(); ++t)
     devices[t] = ScriptedDevice(tools, t, t == 0 ? between : std::function<void(int)>());
@@ -164,17 +174,24 @@ void run_session(Tissue& tissue, const Tools& tools, const ServoOptions& given,
     }
   };
   switch (tools.list.size()) {
-    case 1: run(devices[0]); break;
-    case 2: run(devices[0], devices[1]); break;
-    default: run(devices[0], devices[1], devices[2], devices[3]);
+    case 1:
+      run(devices[0]);
+      break;
+    case 2:
+      run(devices[0], devices[1]);
+      break;
+    default:
+      run(devices[0], devices[1], devices[2], devices[3]);
   }
   for (const ScriptedDevice& device : devices) CHECK(device.wrote_only_finite());
 }
 
-/// All compositions of a model that `make` makes.
-template <class Model, class Make>
-void run_all(const Make& make) {
-  constexpr bool can_be_cut = requires(Model & m) { m.cut_report(); };
+/// All compositions of a model of a block.
+template <class Model>
+void run_all() {
+  constexpr bool can_be_cut = requires(Model & m) {
+    m.cut_report();
+  };
   constexpr bool can_be_grouped = detail::HooksOnlyPrefetch<Model>;
   bool rough = false;
   for (const Tools& tools : kinds_of_tools()) {
@@ -183,9 +200,10 @@ void run_all(const Make& make) {
       for (const bool with_worker : {false, true})
         for (const bool grouped : {false, true}) {
           if (grouped && !can_be_grouped) continue;
-          INFO(tools.name << (own_loop ? ", own loop" : ", session") << (with_worker ? ", worker" : ", steps in the loop")
+          INFO(tools.name << (own_loop ? ", own loop" : ", session")
+                          << (with_worker ? ", worker" : ", steps in the loop")
                           << (grouped ? ", in a group" : ", alone"));
-          Body<Model> body(make, grouped);
+          Body<Model> body(grouped);
           std::optional<BackgroundWorker> worker;
           if (with_worker) worker.emplace(body.model);
           ServoOptions options;
