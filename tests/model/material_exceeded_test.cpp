@@ -100,3 +100,18 @@ TEST_CASE("ticks report tissue beyond the range of its material", "[model][mater
   const double mu = 4e3 / 2.2, bulk = 4e3 / 2.4;  // examined in turn, a part of the elements in every step
   check_cube<Implicit<QuasiNewton<>>, Smoothed<Tet4>>(MooneyRivlin{0.25 * mu, 0.25 * mu, bulk, 1e3}, 0.67, 0.55);
 }
+
+TEST_CASE("the flag goes with the deformation, also for a law that is examined in turns", "[model][material_range]") {
+  using Model = HapticFEModel<Smoothed<Tet4>, StVenantKirchhoff, Implicit<QuasiNewton<>>>;
+  const auto mesh = copy_mesh<Smoothed<Tet4>>(box_tet4(Vector3::Constant(plate_distance), {4, 4, 4}));
+  Model model(mesh, between_plates(1.0).touch("z1"), StVenantKirchhoff{4e3, 0.3, 1e3}, {}, {.inertia = false});
+  CHECK(moved_to(model, 0.45).has(StatusFlag::material_exceeded));
+  model.reset();
+  int flagged = 0;
+  for (int k = 0; k < 20; ++k) {
+    model.advance();
+    flagged += model.begin_tick().has(StatusFlag::material_exceeded);
+    model.end_tick({});
+  }
+  CHECK(flagged <= 8);  // an element beyond the range is examined in every eighth evaluation
+}
