@@ -10,6 +10,7 @@
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -301,4 +302,40 @@ TEST_CASE("a capsule is flagged where a sphere of its radius is", "[haptic][coar
   }
   CHECK(flagged > 0);
   CHECK(flagged < 6);
+}
+
+TEST_CASE("a sphere on softer tissue does not hide the flag of a capsule", "[haptic][coarse]") {
+  const double radius = 6e-3;
+  auto mesh = box_tet4(Vector3(0.08, 0.04, 0.02), {12, 6, 3});
+  mesh.region_names = {"soft", "firm"};
+  mesh.regions.clear();
+  for (const auto& element : mesh.elements) {
+    double x = 0.0;
+    for (const NodeId node : element) x += mesh.position(Index{node})[0] / 4.0;
+    mesh.regions.push_back(x > 0.04);
+  }
+  Scene scene;
+  scene.fix("z0").touch("z1", {.radius = radius});
+  SetupOptions options;
+  options.force_error = measured_force_error();
+  HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>> block(
+      mesh, scene,
+      RegionMaterials<LinearElastic>{{"soft", LinearElastic{50.0, 0.45, 1000.0}},
+                                     {"firm", LinearElastic{5e3, 0.45, 1000.0}}},
+      options);
+  for (const bool alone : {true, false}) {
+    CAPTURE(alone);
+    HapticServo servo(block, {SphereTool{.radius = radius}, CapsuleTool(radius, 4e-3)}, Tip::options());
+    std::array<ToolState, 2> states;
+    Status status;
+    for (int i = 0; i <= 100; ++i) {
+      const double height = 0.02 + radius + 1e-4 - 2.1e-3 * i / 100.0;
+      states[0].position = Vector3(0.0203, 0.0191, alone ? 0.1 : height);
+      states[1].position = Vector3(0.0603, 0.0191, height);
+      states[1].orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};  // along the x-axis
+      states[0].time = states[1].time = 1e-3 * i;
+      status = servo.tick(states)[1].status;
+    }
+    CHECK(status.has(StatusFlag::coarse_contact));
+  }
 }
