@@ -243,7 +243,7 @@ TEST_CASE("viscoelastic tissue without inertia relaxes under a deep press withou
       const double force = servo.contact_force()[2];
       if (k > 1000) {
         CHECK(!status.has(StatusFlag::solver_not_converged));
-        CHECK(force <= last + 1e-3);
+        CHECK(force <= last + 5e-3);  // where the iterations end depends on rounding; swinging was 0.13 N per step
       }
       last = force;
     }

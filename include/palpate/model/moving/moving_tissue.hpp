@@ -220,6 +220,8 @@ class MovingTissue : public ModelBase {
     listed[vertex(v)] = round;
     into.item[into.count++] = v;
   }
+  /// Takes the newest forces of a tick. One before a reset may name vertices of cuts that the reset has dropped.
+  void take_forces() noexcept;
   void start_secants();
   void list_every_vertex();
   std::span<const int> near_vertices() const noexcept;

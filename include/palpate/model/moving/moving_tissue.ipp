@@ -18,6 +18,17 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<MovingTissue>);
 
+namespace detail {
+
+/// Removes those of the first `count` items for which `is_gone` is true.
+template <class Items, class IsGone>
+void drop_items(Items& items, std::size_t& count, const IsGone& is_gone) noexcept {
+  const auto end = items.begin() + static_cast<std::ptrdiff_t>(count);
+  count = static_cast<std::size_t>(std::remove_if(items.begin(), end, is_gone) - items.begin());
+}
+
+}  // namespace detail
+
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
     raise(SetupErrorKind::unsupported, "a cache file for moving tissue, which has nothing to store",
@@ -98,18 +109,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const FlushDenormals flush;
   report_failed(false);
   if (!prepare_step()) return {};
-  pressing_.update();
-  if (Forces& given = pressing_.front();
-      given.number != changed_.number) {  // of a tick before a reset that drops vertices
-    const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
-    const auto keep = [](auto& list, std::size_t& count, const auto& drops) {
-      count = static_cast<std::size_t>(
-          std::remove_if(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count), drops) - list.begin());
-    };
-    keep(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
-    keep(given.pressed.item, given.pressed.count, is_gone);
-    keep(given.near.item, given.near.count, is_gone);
-  }
+  take_forces();
   full_.setZero();
   add(pressing_.front(), 1.0, full_);
   add(used_, -1.0, full_);
@@ -138,6 +138,16 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   publish(status);
   ++steps_;
   return done;
+}
+
+PALPATE_INLINE void MovingTissue::take_forces() noexcept {
+  pressing_.update();
+  Forces& given = pressing_.front();
+  if (given.number == changed_.number) return;
+  const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
+  detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
+  detail::drop_items(given.pressed.item, given.pressed.count, is_gone);
+  detail::drop_items(given.near.item, given.near.count, is_gone);
 }
 
 /// Records the change of displacement since `moved_` that the change of forces since `before` has caused.
