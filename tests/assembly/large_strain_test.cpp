@@ -1,5 +1,6 @@
 // Energy, force and tangent at any deformation, against closed forms, differences and motions.
 #include <palpate/assembly/large_strain.hpp>
+#include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/testing/random.hpp>
@@ -19,6 +20,15 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 constexpr NeoHookean gel{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1e3};
+
+/// Counts its tangents.
+struct CountedMooneyRivlin : MooneyRivlin {
+  static inline long tangents = 0;
+  Matrix9 tangent(const Tensor3<double>& f) const noexcept {
+    ++tangents;
+    return MooneyRivlin::tangent(f);
+  }
+};
 
 template <Element E>
 Mesh<E> crooked_box() {
@@ -175,4 +185,20 @@ TEST_CASE("a mesh with inverted elements at rest is refused", "[assembly][large_
       refusal([&] { LargeStrain<Tet4, NeoHookean>{make_hyperelastic_body(mesh, std::vector<NeoHookean>{gel})}; });
   CHECK(problem.kind == SetupErrorKind::inverted_element);
   CHECK(problem.ids == std::vector<Index>{3});
+}
+
+TEST_CASE("a law without a rule for its range is examined at most once per element and force", "[assembly]") {
+  const Mesh<Tet10> mesh = crooked_box<Tet10>();
+  const LargeStrain<Tet10, CountedMooneyRivlin> body(
+      make_hyperelastic_body(mesh, std::vector{CountedMooneyRivlin{{600.0, 200.0, 4e4, 1e3}}}));
+  VectorX u(3 * mesh.node_count()), f(u.size());
+  const auto tangents_at = [&](double stretch) {
+    for (Index i = 0; i < mesh.node_count(); ++i)
+      set_node_vector(u, i, Vector3((stretch - 1.0) * mesh.position(i)[0], 0.0, 0.0));
+    CountedMooneyRivlin::tangents = 0;
+    body.force(u, f);
+    return CountedMooneyRivlin::tangents;
+  };
+  CHECK(tangents_at(1.05) == 0);
+  CHECK(tangents_at(1.6) == mesh.element_count());
 }

@@ -80,3 +80,25 @@ TEST_CASE("orders from two threads reach a third thread exactly once", "[cut][or
   CHECK(std::count(seen.begin(), seen.end(), 1) == 2 * each);
   CHECK_FALSE(orders.are_open());
 }
+
+TEST_CASE("orders are stalled when nobody processes them, not while calls take or wait for long", "[cut][orders]") {
+  CutServed served;
+  const auto stalled_within = [&](int ticks) {
+    bool any = false;
+    for (int k = 0; k < ticks; ++k) any = served.is_stalled(true) || any;
+    return any;
+  };
+  CHECK_FALSE(stalled_within(CutServed::patience));
+  CHECK(stalled_within(1));
+  {
+    const CutServed::Call working(served), waiting(served);  // of two threads
+    CHECK_FALSE(stalled_within(3 * CutServed::patience));
+  }
+  CHECK_FALSE(stalled_within(CutServed::patience));
+  CHECK(stalled_within(1));
+  CHECK_FALSE(served.is_stalled(false));  // nothing waits
+  served.report_failed(true);
+  CHECK(served.is_stalled(false));
+  { const CutServed::Call call(served); }
+  CHECK_FALSE(served.is_stalled(false));
+}
