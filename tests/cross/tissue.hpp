@@ -1,0 +1,58 @@
+// A tissue of any composition behind one interface.
+#pragma once
+
+#include "built.hpp"
+
+#include <palpate/concepts/tissue_model.hpp>
+#include <palpate/haptic/background_worker.hpp>
+#include <palpate/haptic/haptic_servo.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cross {
+
+struct TissueOptions {
+  int threads = 1;
+  std::string cache_file{};
+  std::string member = "alone";
+};
+
+class Tissue {
+ public:
+  virtual ~Tissue() = default;
+  /// A servo on the tissue, on a group of it, or on an adaptor around it, as `member` requests.
+  virtual std::unique_ptr<palpate::HapticServo> servo(const palpate::ToolList& tools,
+                                                      const palpate::ServoOptions& options) = 0;
+  /// Seconds until the next call of work(); 0: there is no background work, or it is done.
+  virtual double interval() const = 0;
+  virtual void work() = 0;
+  virtual std::unique_ptr<palpate::BackgroundWorker> worker() = 0;
+  virtual void reset() = 0;
+  virtual void set_pose(const Eigen::Isometry3d& pose) = 0;
+  /// Orders a cut; false for a tissue that cannot be cut.
+  virtual bool cut(const palpate::BladeSweep& sweep) = 0;
+  virtual const palpate::SetupReport& report() const = 0;
+  /// Displacement of the nodes under the forces of the newest snapshot, 3 per admitted node [m].
+  virtual palpate::VectorX displacement(std::span<const palpate::VertexForce> forces) = 0;
+};
+
+/// An element, a law and a solver by the words of a scene, and how to make its tissue.
+struct Composition {
+  std::string element, law, solver;
+  /// Throws SetupError. Takes step, inertia and material from the scene; member and threads from the options.
+  std::unique_ptr<Tissue> (*make)(const Scene& scene, const Body& body, const TissueOptions& options);
+};
+
+/// All that are linked into the program.
+const std::vector<Composition>& compositions();
+const Composition* find_composition(const std::string& element, const std::string& law, const std::string& solver);
+
+bool moves(const std::string& solver);
+bool can_be_cut(const std::string& solver);
+/// Whether a tissue of this solver can be in a group.
+bool can_be_grouped(const std::string& solver);
+bool has_float(const std::string& solver);
+
+}  // namespace cross
