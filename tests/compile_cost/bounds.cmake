@@ -19,3 +19,6 @@ set(readme_header_only_functions 17800)
 set(mesh_only_compiled_percent 115)
 set(mesh_only_header_only_percent 183)  # as above
 set(mesh_only_compiled_functions 140)
+# Points that are added to the percentages above with other compilers than g++ 12: the headers of their standard library
+# are of other length (188 % and 118 % with g++ 14).
+set(other_compiler_points 6)

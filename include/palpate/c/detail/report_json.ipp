@@ -13,7 +13,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace c_interface {
 
 namespace {
 
-std::string quoted(std::string_view text) {
+/// Not called `quoted`: for a std::string the compiler would consider std::quoted, too.
+std::string json_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -49,7 +50,7 @@ std::string json(std::uint64_t value) {
   return std::to_string(value);
 }
 std::string json(const std::string& value) {
-  return quoted(value);
+  return json_string(value);
 }
 
 /// Writes an object member by member.
@@ -60,7 +61,7 @@ class Object {
     return raw(name, json(value));
   }
   Object& raw(const char* name, const std::string& value) {
-    text_ += (text_.size() > 1 ? ", " : "") + quoted(name) + ": " + value;
+    text_ += (text_.size() > 1 ? ", " : "") + json_string(name) + ": " + value;
     return *this;
   }
   std::string end() const { return text_ + "}"; }
