@@ -27,7 +27,7 @@ struct Change {
   double scale = 1.0;                    ///< of all lengths; forces at the same modulus are scale^2 times as large
   bool renumbered = false;               ///< nodes and elements in another order
   bool split = false;                    ///< in two regions of one material
-  double pause = 0.0;                    ///< [s] that each phase of the paths takes longer
+  double pause = 0.0;                    ///< [s] that the second phase of the paths takes longer, at its beginning
 
   Vector3 operator()(const Vector3& x) const { return scale * (linear * x) + shift; }
   /// Of a direction or force.
@@ -52,25 +52,32 @@ bool has_hexahedra(const std::string& body);
 
 Body make_body(const Scene& scene, const Change& change = {});
 
-/// A point of the touchable surface of the body as its formula says, before facets and jitter, and its outward normal.
+/// A point of the touchable surface of the body as its formula gives it, before facets and jitter, and its outward
+/// normal.
 struct Place {
   Vector3 point, normal, along;  ///< along: a unit tangent
 };
+/// Whether the body has another side that can be touched.
+bool has_opposite(const Scene& scene);
 /// u, v in 0 ... 1 of the touchable part; `opposite` the point on the other side, where there is one.
 Place place_of(const Scene& scene, double u, double v, bool opposite);
 
-/// The tools, in the change's units and axes.
-palpate::ToolList tools_of(const Scene& scene, const Change& change = {});
+/// The tools, in the change's units and axes. The edge of a blade does not rotate with its device: it follows the pose
+/// of the tissue here.
+palpate::ToolList tools_of(const Scene& scene, const Change& change = {},
+                           const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity());
 
 /// The state of a tool in a tick, world frame. The path has three phases: it approaches and goes in to its depth (0 to
 /// 0.45 of the ticks), stays (hold, press: to 0.7), and comes out again (to 1); slide, twist, leap and lost change
 /// the second phase. It is smooth and slow enough that a tissue without inertia follows.
 palpate::ToolState state_of(const Scene& scene, std::size_t tool, int tick, const Eigen::Isometry3d& pose,
                             const Change& change = {});
-/// Depth of the tool below the surface at rest at its place in a tick [m]; negative outside.
-double depth_of(const Scene& scene, std::size_t tool, int tick);
+/// Depth of the tool below the surface at rest at its place in a tick [m], in the change's units; negative outside.
+double depth_of(const Scene& scene, std::size_t tool, int tick, const Change& change = {});
+/// Ticks of the paths, with the pause of the change, which is at the beginning of the second phase.
+int ticks_of(const Scene& scene, const Change& change = {});
 /// First tick of the second phase, and the first after it.
 int first_hold(const Scene& scene);
-int last_hold(const Scene& scene);
+int last_hold(const Scene& scene, const Change& change = {});
 
 }  // namespace cross

@@ -63,7 +63,7 @@ void write(std::string& text, const std::string& prefix, Visit&& visit_values) {
 
 const std::vector<std::string>& words_of(const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> words{
-      {"body", {"block", "plate", "lobe", "dome", "tube", "ball", "organ"}},
+      {"body", {"block", "plate", "lobe", "dome", "tube", "sphere", "organ"}},
       {"regions", {"one", "layer", "half", "inclusion"}},
       {"touched", {"top", "surface"}},
       {"support", {"bottom", "sides", "end"}},
@@ -76,7 +76,7 @@ const std::vector<std::string>& words_of(const std::string& name) {
         "inverse", "stiffening", "newton", "corotated_cg", "quasi_newton", "quasi_newton_float", "central_difference",
         "semi_implicit_euler", "cut_condensed", "cut_quasi_newton", "cut_quasi_newton_float"}},
       {"load", {"none", "gravity", "pressure", "traction", "body", "point", "swelling"}},
-      {"pose", {"identity", "turned"}},
+      {"pose", {"identity", "rotated"}},
       {"member", {"alone", "group", "pair", "adaptor"}},
       {"kind", {"sphere", "capsule", "plate", "blade"}},
       {"path", {"press", "hold", "slide", "twist", "leap", "lost"}}};

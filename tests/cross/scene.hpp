@@ -25,9 +25,9 @@ struct ToolValue {
 /// Lengths in metres; the defaults are the plainest scene. Words that are allowed: scene.cpp.
 struct Scene {
   // Body
-  std::string body = "block";        ///< block, plate, lobe, dome, tube, ball, organ
+  std::string body = "block";        ///< block, plate, lobe, dome, tube, sphere, organ
   double edge = 6e-3;                ///< length of a cell [m]
-  int cells_x = 6, cells_y = 6, cells_z = 3;  ///< of ball and organ: the first is the number of layers
+  int cells_x = 6, cells_y = 6, cells_z = 3;  ///< of sphere and organ: the first is the number of layers
   double jitter = 0.0;               ///< of nodes inside, in edges
   int slivers = 0;                   ///< tetrahedra made almost flat
   std::string regions = "one";       ///< one, layer, half, inclusion
@@ -52,7 +52,7 @@ struct Scene {
   int threads = 1;
   double step = 0.01;                ///< of moving tissue [s]
   bool inertia = true;               ///< of tissue on quasi_newton
-  std::string pose = "identity";     ///< identity, turned
+  std::string pose = "identity";     ///< identity, rotated
   std::string member = "alone";      ///< alone, group, pair, adaptor
   int cuts = 0;                      ///< orders of cuts beside the blade's, at even times
   std::vector<ToolValue> tools{ToolValue{}};

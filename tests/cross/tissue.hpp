@@ -6,6 +6,7 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/model/setup_report.hpp>
 
 #include <memory>
 #include <string>
@@ -17,6 +18,7 @@ struct TissueOptions {
   int threads = 1;
   std::string cache_file{};
   std::string member = "alone";
+  palpate::Matrix3 axes = palpate::Matrix3::Identity();  ///< Change::linear: maps the directions of fibres
 };
 
 class Tissue {
@@ -36,6 +38,8 @@ class Tissue {
   virtual const palpate::SetupReport& report() const = 0;
   /// Displacement of the nodes under the forces of the newest snapshot, 3 per admitted node [m].
   virtual palpate::VectorX displacement(std::span<const palpate::VertexForce> forces) = 0;
+  /// Vertices of the contact surface under forces on it, world frame [m]. Requires their columns, as a tick does.
+  virtual std::vector<Vector3> surface(std::span<const palpate::VertexForce> forces) = 0;
 };
 
 /// An element, a law and a solver by the words of a scene, and how to make its tissue.
@@ -53,6 +57,7 @@ bool moves(const std::string& solver);
 bool can_be_cut(const std::string& solver);
 /// Whether a tissue of this solver can be in a group.
 bool can_be_grouped(const std::string& solver);
+/// Whether a solver computes in single precision.
 bool has_float(const std::string& solver);
 
 }  // namespace cross

@@ -1,0 +1,219 @@
+// The same scene in another manner gives the same force.
+#include "comparisons.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+
+namespace cross {
+
+using namespace palpate;
+
+namespace {
+
+/// Flags after which two runs may differ: where the tick itself reports that its solution is not the only one, or not
+/// the final one. That facets are coarse or displacements large is true of both runs alike.
+Status excuses() {
+  Status s;
+  for (const StatusFlag f :
+       {StatusFlag::inverted, StatusFlag::solver_not_converged, StatusFlag::degraded_model, StatusFlag::lost_contact,
+        StatusFlag::reacquired, StatusFlag::material_exceeded, StatusFlag::energy_grew, StatusFlag::step_refused,
+        StatusFlag::non_finite_force, StatusFlag::stalled_tissue})
+    s.set(f);
+  return s;
+}
+
+Matrix3 rotation() { return Eigen::AngleAxisd(2.1, Vector3(0.3, -1.0, 0.5).normalized()).toRotationMatrix(); }
+Matrix3 reflection() { return Vector3(1.0, -1.0, 1.0).asDiagonal(); }
+
+/// Relative difference up to which two runs whose rounding differs are equal. Friction and motion remember.
+double rounding_tolerance(const Scene& scene) {
+  return moves(scene.solver) || scene.friction > 0.0 || has_float(scene.solver) ? 0.02 : 3e-3;
+}
+
+std::vector<Finding> compare_with(const char* name, const Scene& scene, const Run& run, const Manner& manner,
+                                  double tolerance) {
+  return compare(name, scene, run, cross::run(scene, manner), tolerance);
+}
+
+bool always(const Scene&) { return true; }
+bool is_alone(const Scene& s) { return s.member == "alone"; }
+bool is_static(const Scene& s) { return !moves(s.solver) && !can_be_cut(s.solver); }
+
+std::vector<Finding> check_repeated(const Scene& s, const Run& r) { return compare_with("repeated", s, r, {}, 0.0); }
+std::vector<Finding> check_again(const Scene& s, const Run& r) {
+  return compare_with("played again", s, r, {.plays = 2}, 1e-9);
+}
+std::vector<Finding> check_new_servo(const Scene& s, const Run& r) {
+  return compare_with("new servo", s, r, {.plays = 2, .new_servo = true}, 1e-9);
+}
+std::vector<Finding> check_moved(const Scene& s, const Run& r) {
+  return compare_with("other pose", s, r, {.pose = s.pose == "identity" ? "rotated" : "identity"}, rounding_tolerance(s));
+}
+std::vector<Finding> check_shifted(const Scene& s, const Run& r) {
+  return compare_with("shifted", s, r, {.change = {.shift = {0.11, -0.07, 0.05}}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_rotated(const Scene& s, const Run& r) {
+  return compare_with("rotated", s, r, {.change = {.linear = rotation()}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_mirrored(const Scene& s, const Run& r) {
+  return compare_with("mirrored", s, r, {.change = {.linear = reflection()}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_scaled(const Scene& s, const Run& r) {
+  return compare_with("scaled", s, r, {.change = {.scale = 1.7}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_renumbered(const Scene& s, const Run& r) {
+  return compare_with("renumbered", s, r, {.change = {.renumbered = true}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_split(const Scene& s, const Run& r) {
+  return compare_with("two equal regions", s, r, {.change = {.split = true}}, rounding_tolerance(s));
+}
+std::vector<Finding> check_group(const Scene& s, const Run& r) {
+  return compare_with("group of one", s, r, {.member = "group"}, 0.0);
+}
+std::vector<Finding> check_pair(const Scene& s, const Run& r) {
+  return compare_with("group of two", s, r, {.member = "pair"}, rounding_tolerance(s));
+}
+std::vector<Finding> check_adaptor(const Scene& s, const Run& r) {
+  return compare_with("adaptor", s, r, {.member = "adaptor"}, 0.0);
+}
+std::vector<Finding> check_threads(const Scene& s, const Run& r) {
+  return compare_with("three threads", s, r, {.threads = s.threads == 1 ? 3 : 1}, 1e-9);
+}
+std::vector<Finding> check_cache(const Scene& s, const Run& r) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("palpate_cross_" + std::to_string(getpid()))).string();
+  (void)cross::run(s, {.cache_file = file});
+  const Run read = cross::run(s, {.cache_file = file});
+  std::remove(file.c_str());
+  return compare("read from a cache", s, r, read, 0.0);
+}
+/// The solver of double precision that solves the same equations.
+std::string twin_of(const std::string& solver) {
+  if (solver == "condensed_float") return "condensed";
+  if (solver == "quasi_newton_float") return "quasi_newton";
+  if (solver == "cut_quasi_newton_float") return "cut_quasi_newton";
+  return {};
+}
+bool has_twin(const Scene& s) {
+  return !twin_of(s.solver).empty() && find_composition(s.element, s.law, twin_of(s.solver)) != nullptr;
+}
+std::vector<Finding> check_double(const Scene& s, const Run& r) {
+  return compare_with("double precision", s, r, {.solver = twin_of(s.solver)}, 0.02);
+}
+bool has_other_static(const Scene& s) { return is_static(s) && s.law == "linear" && s.solver != "stiffening" && s.solver != "sparse_cholesky"; }
+std::vector<Finding> check_sparse(const Scene& s, const Run& r) {
+  return compare_with("sparse factorisation", s, r, {.solver = "sparse_cholesky"}, 0.01);
+}
+/// Before the first cut, tissue that can be cut is that of the inner solver.
+bool is_uncut(const Scene& s) {
+  return can_be_cut(s.solver) && s.cuts == 0 &&
+         std::none_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; }) &&
+         find_composition(s.element, s.law, s.solver.substr(4)) != nullptr;
+}
+std::vector<Finding> check_uncut(const Scene& s, const Run& r) {
+  return compare_with("not cuttable", s, r, {.solver = s.solver.substr(4)}, rounding_tolerance(s));
+}
+std::vector<Finding> check_all_rows(const Scene& s, const Run& r) {
+  return compare_with("all contacts", s, r, {.capacity = 1000}, 0.05);
+}
+/// Newton's method in every step, for tissue without inertia that has come to rest.
+bool has_newton(const Scene& s) {
+  return s.solver.starts_with("quasi_newton") && find_composition(s.element, s.law, "newton") != nullptr;
+}
+std::vector<Finding> check_newton(const Scene& s, const Run& r) {
+  const Run other = cross::run(s, {.solver = "newton"});
+  return compare_at_rest("Newton's method", s, r, other, 0.05);
+}
+bool has_work(const Scene& s) { return moves(s.solver) && s.step >= 0.005; }
+std::vector<Finding> check_worker(const Scene& s, const Run& r) {
+  return compare_at_rest("worker", s, r, cross::run(s, {.worker = true}), 0.05);
+}
+
+}  // namespace
+
+Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected, Status excuse) {
+  Finding f{oracle, tick, tool, found, expected};
+  // A flag of the ticks shortly before counts: a tissue that moves has the force of its last step.
+  Status seen;
+  for (int k = std::max(0, tick - 20); k <= std::min<int>(tick + 5, static_cast<int>(run.ticks.size()) - 1); ++k)
+    for (const ToolTick& t : run.ticks[static_cast<std::size_t>(k)]) seen |= t.status;
+  for (int bit = 0; bit < status_flag_count; ++bit) {
+    const StatusFlag flag = static_cast<StatusFlag>(1u << bit);
+    if (!seen.has(flag)) continue;
+    f.flags += (f.flags.empty() ? "" : " ") + std::string(status_flag_name(bit));
+    f.flagged = f.flagged || excuse.has(flag);
+  }
+  return f;
+}
+
+std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance) {
+  if (run.refused != other.refused)
+    return {{name, 0, 0, run.refused.empty() ? 0.0 : 1.0, other.refused.empty() ? 0.0 : 1.0, false, run.refused + "/" + other.refused}};
+  const double scale = std::max({run.peak, other.peak, 1e-4 * scene.youngs_modulus * scene.edge * scene.edge});
+  std::vector<Finding> findings;
+  const std::size_t ticks = std::min(run.ticks.size(), other.ticks.size());
+  for (std::size_t k = 0; k < ticks; ++k)
+    for (std::size_t t = 0; t < run.ticks[k].size(); ++t) {
+      const ToolTick &a = run.ticks[k][t], &b = other.ticks[k][t];
+      const bool same = tolerance > 0.0 ? (a.force - b.force).norm() <= tolerance * scale
+                                        : a.force == b.force && a.status == b.status && a.bound == b.bound;
+      if (same) continue;
+      const int tick = static_cast<int>(k), tool = static_cast<int>(t);
+      Finding f = at(name, run, tick, tool, a.force.norm(), b.force.norm(), excuses());
+      f.flagged = tolerance > 0.0 && (f.flagged || at(name, other, tick, tool, 0.0, 0.0, excuses()).flagged);
+      if (a.force == b.force) f.flags += " flags or bounds differ";
+      findings.push_back(f);
+      if (!f.flagged) return findings;
+    }
+  return findings;
+}
+
+std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
+                                     double tolerance) {
+  if (run.refused != other.refused || !run.refused.empty()) return {};
+  const std::size_t tick = static_cast<std::size_t>(last_hold(scene) - 2);
+  const double scale = std::max({run.peak, other.peak, 1e-4 * scene.youngs_modulus * scene.edge * scene.edge});
+  for (std::size_t t = 0; t < run.ticks[tick].size(); ++t) {
+    const Vector3 &a = run.ticks[tick][t].force, &b = other.ticks[tick][t].force;
+    if ((a - b).norm() <= tolerance * scale) continue;
+    Finding f = at(name, run, static_cast<int>(tick), static_cast<int>(t), a.norm(), b.norm(), excuses());
+    f.flagged = f.flagged || at(name, other, static_cast<int>(tick), 0, 0.0, 0.0, excuses()).flagged;
+    return {f};
+  }
+  return {};
+}
+
+const std::vector<Oracle>& comparisons() {
+  static const std::vector<Oracle> all{
+      {"repeated", 1, always, check_repeated},
+      {"played again", 2, always, check_again},
+      {"new servo", 2, always, check_new_servo},
+      {"other pose", 1, [](const Scene& s) { return s.load != "gravity"; }, check_moved},
+      {"shifted", 1, always, check_shifted},
+      {"rotated", 1, always, check_rotated},
+      {"mirrored", 1, always, check_mirrored},
+      {"scaled", 1, [](const Scene& s) { return s.cuts == 0; }, check_scaled},
+      {"renumbered", 1, always, check_renumbered},
+      {"two equal regions", 1, [](const Scene& s) { return s.regions == "one" && s.element != "smoothed_tet4"; }, check_split},
+      {"group of one", 1, [](const Scene& s) { return is_alone(s) && can_be_grouped(s.solver); }, check_group},
+      {"group of two", 2, [](const Scene& s) { return is_alone(s) && can_be_grouped(s.solver); }, check_pair},
+      {"adaptor", 1, is_alone, check_adaptor},
+      {"three threads", 1, always, check_threads},
+      {"read from a cache", 2, [](const Scene& s) { return s.solver == "condensed" || s.solver == "sparse_cholesky" || s.solver == "inverse"; },
+       check_cache},
+      {"double precision", 1, has_twin, check_double},
+      {"sparse factorisation", 1, has_other_static, check_sparse},
+      {"not cuttable", 1, is_uncut, check_uncut},
+      {"all contacts", 3, [](const Scene& s) { return s.capacity == 0; }, check_all_rows},
+      {"Newton's method", 2, has_newton, check_newton},
+      {"worker", 3, has_work, check_worker},
+  };
+  return all;
+}
+
+}  // namespace cross

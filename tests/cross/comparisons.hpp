@@ -1,0 +1,23 @@
+// Oracles that run a scene a second time in another manner, and how runs are compared.
+#pragma once
+
+#include "oracles.hpp"
+
+namespace cross {
+
+/// A finding in a tick; flagged if one of the flags of `excuse` is set in it or shortly before.
+Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected,
+           palpate::Status excuse);
+
+/// Findings where forces differ by more than `tolerance` of the largest force; with 0 where bits, flags or bounds
+/// differ, and then no flag excuses it. Ends at the first silent one.
+std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance);
+/// The same only in the last tick of the second phase.
+std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
+                                     double tolerance);
+
+const std::vector<Oracle>& comparisons();
+const std::vector<Oracle>& laws_of_physics();
+const std::vector<Oracle>& references();
+
+}  // namespace cross

@@ -1,0 +1,66 @@
+#include "oracles.hpp"
+
+#include "comparisons.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace cross {
+
+using palpate::Status;
+using palpate::StatusFlag;
+
+Status doubts() {
+  Status s;
+  for (int bit = 0; bit < palpate::status_flag_count; ++bit) {
+    const auto flag = static_cast<StatusFlag>(1u << bit);
+    const bool only_limits = flag == StatusFlag::saturated || flag == StatusFlag::slew_limited ||
+                             flag == StatusFlag::deadline_missed || flag == StatusFlag::ramping;
+    if (!only_limits) s.set(flag);
+  }
+  return s;
+}
+
+const std::vector<Oracle>& oracles() {
+  static const std::vector<Oracle> all = [] {
+    std::vector<Oracle> list;
+    for (const auto* some : {&laws_of_physics(), &comparisons(), &references()})
+      list.insert(list.end(), some->begin(), some->end());
+    return list;
+  }();
+  return all;
+}
+
+const Oracle& find_oracle(const std::string& name) {
+  for (const Oracle& o : oracles())
+    if (o.name == name) return o;
+  throw std::runtime_error("there is no oracle \"" + name + "\"");
+}
+
+Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choose) {
+  const auto start = std::chrono::steady_clock::now();
+  Verdict verdict;
+  const Run r = run(scene);
+  verdict.refused = r.refused;
+  for (const auto& tick : r.ticks)
+    for (const ToolTick& t : tick) {
+      ++verdict.alarms.ticks;
+      verdict.alarms.doubted += (t.status.bits() & doubts().bits()) != 0;
+    }
+  for (const Oracle& oracle : oracles()) {
+    if (!choose(oracle) || !oracle.applies(scene)) continue;
+    if (!r.refused.empty() && oracle.cost != 1) continue;  // a refusal is compared with others, no more
+    std::vector<Finding> found = oracle.check(scene, r);
+    const auto silent = std::find_if(found.begin(), found.end(), [](const Finding& f) { return !f.flagged; });
+    if (silent != found.end())
+      verdict.findings.push_back(*silent);
+    else if (!found.empty())
+      verdict.findings.push_back(found.front());
+  }
+  verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return verdict;
+}
+
+}  // namespace cross

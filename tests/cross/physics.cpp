@@ -1,0 +1,182 @@
+// Laws of physics that every force must follow.
+#include "comparisons.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cross {
+
+using namespace palpate;
+
+namespace {
+
+bool has_inertia(const Scene& s) {
+  return moves(s.solver) && !(s.solver.find("quasi_newton") != std::string::npos && !s.inertia);
+}
+bool remembers(const Scene& s) { return s.law == "viscoelastic"; }
+bool is_cut(const Scene& s) {
+  return s.cuts > 0 || std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
+}
+bool grasps(const Scene& s) {
+  return std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.grasps; });
+}
+bool all_paths(const Scene& s, std::initializer_list<const char*> allowed) {
+  return std::all_of(s.tools.begin(), s.tools.end(), [&](const ToolValue& t) {
+    return std::find(allowed.begin(), allowed.end(), t.path) != allowed.end();
+  });
+}
+/// One tool that presses tissue without loads, as far as the direction of the force follows from the path alone.
+bool is_one_press(const Scene& s) {
+  return s.tools.size() == 1 && s.tools[0].kind != "blade" && !s.tools[0].grasps && s.load == "none" &&
+         s.support_moves == 0.0 && !is_cut(s) && all_paths(s, {"press", "hold"});
+}
+double force_scale(const Scene& s, const Run& r) {
+  return std::max(r.peak, 1e-4 * s.youngs_modulus * s.edge * s.edge);
+}
+
+std::vector<Finding> check_finite(const Scene&, const Run& r) {
+  for (std::size_t k = 0; k < r.ticks.size(); ++k)
+    for (std::size_t t = 0; t < r.ticks[k].size(); ++t)
+      if (!r.ticks[k][t].finite)
+        return {at("finite", r, static_cast<int>(k), static_cast<int>(t), 0.0, 0.0, {})};
+  return {};
+}
+
+/// Forces on the tissue and on the tools are equal.
+std::vector<Finding> check_reaction(const Scene& s, const Run& r) {
+  for (std::size_t k = 0; k < r.imbalance.size(); ++k)
+    if (!(r.imbalance[k] <= 1e-6 * force_scale(s, r)))
+      return {at("action and reaction", r, static_cast<int>(k), 0, r.imbalance[k], 0.0, {})};
+  return {};
+}
+
+/// The ticks of one tool whose values fail; the first silent one, or the first.
+template <class Fails>
+std::vector<Finding> first_failure(const char* name, const Run& r, int from, int to, std::size_t tool, Fails&& fails) {
+  std::vector<Finding> findings;
+  for (int k = std::max(from, 0); k < std::min<int>(to, static_cast<int>(r.ticks.size())); ++k) {
+    double found = 0.0, expected = 0.0;
+    if (!fails(k, found, expected)) continue;
+    findings.push_back(at(name, r, k, static_cast<int>(tool), found, expected, doubts()));
+    if (!findings.back().flagged) return {findings.back()};
+  }
+  if (findings.size() > 1) findings.resize(1);
+  return findings;
+}
+
+/// A tool is pushed out of the tissue, never pulled in.
+std::vector<Finding> check_pull(const Scene& s, const Run& r) {
+  const Vector3 out = place_of(s, s.tools[0].u, s.tools[0].v, s.tools[0].opposite).normal;
+  return first_failure("no pull", r, 0, static_cast<int>(r.ticks.size()), 0, [&](int k, double& found, double&) {
+    found = r.ticks[static_cast<std::size_t>(k)][0].force.dot(out);
+    return found < -0.02 * force_scale(s, r);
+  });
+}
+
+/// The force grows while the tool goes in.
+std::vector<Finding> check_monotone(const Scene& s, const Run& r) {
+  const Vector3 out = place_of(s, s.tools[0].u, s.tools[0].v, s.tools[0].opposite).normal;
+  double most = 0.0;
+  return first_failure("grows with depth", r, 0, first_hold(s), 0, [&](int k, double& found, double& expected) {
+    found = r.ticks[static_cast<std::size_t>(k)][0].force.dot(out);
+    most = std::max(most, found), expected = most;
+    return found < most - 0.03 * force_scale(s, r);
+  });
+}
+
+/// A tool that stays inside the tissue is pushed.
+std::vector<Finding> check_lost(const Scene& s, const Run& r) {
+  return first_failure("not lost", r, first_hold(s), last_hold(s), 0, [&](int k, double& found, double& expected) {
+    const ToolTick& t = r.ticks[static_cast<std::size_t>(k)][0];
+    found = t.force.norm(), expected = 0.02 * s.youngs_modulus * t.depth * std::sqrt(s.tools[0].radius * t.depth);
+    return t.depth > 0.1 * s.tools[0].radius && t.depth > 0.02 * s.edge && found < 0.01 * expected;
+  });
+}
+
+/// There is no force before the tool touches.
+std::vector<Finding> check_free(const Scene& s, const Run& r) {
+  for (std::size_t t = 0; t < s.tools.size(); ++t) {
+    const double margin = s.body == "block" || s.body == "plate" || s.body == "lobe" ? 1e-6 : 0.3 * s.edge;
+    auto found = first_failure("no force in the air", r, 0, first_hold(s), t, [&](int k, double& f, double&) {
+      const ToolTick& tick = r.ticks[static_cast<std::size_t>(k)][t];
+      f = tick.force.norm();
+      return tick.depth < -margin && f > 1e-3 * force_scale(s, r);
+    });
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+/// A closed path gives no energy to the hands; without friction and memory the tissue keeps none either.
+std::vector<Finding> check_work(const Scene& s, const Run& r) {
+  const double tolerance = (moves(s.solver) ? 0.05 : 0.02) * r.work_in + 1e-9;
+  const bool elastic = s.friction == 0.0 && !has_inertia(s) && !remembers(s) && !is_cut(s) && !grasps(s) &&
+                       !moves(s.solver) && all_paths(s, {"press", "hold"});
+  if (r.work >= -tolerance && (!elastic || r.work <= 3.0 * tolerance)) return {};
+  Status seen;
+  for (const auto& tick : r.ticks)
+    for (const ToolTick& t : tick) seen |= t.status;
+  Finding f = at("work of a closed path", r, static_cast<int>(r.ticks.size()) - 1, 0, r.work, r.work_in, doubts());
+  f.flagged = f.flagged || (seen.bits() & doubts().bits()) != 0;
+  return {f};
+}
+
+/// A tool that stays at its place has a force that does not swing.
+std::vector<Finding> check_settled(const Scene& s, const Run& r) {
+  const int from = (2 * first_hold(s) + 3 * last_hold(s)) / 5, to = last_hold(s);
+  for (std::size_t t = 0; t < s.tools.size(); ++t) {
+    double swing = 0.0;  // changes that are reversed
+    int worst = from;
+    for (int k = from + 2; k < to; ++k) {
+      const auto f = [&](int i) { return r.ticks[static_cast<std::size_t>(i)][t].force; };
+      const Vector3 before = f(k - 1) - f(k - 2), now = f(k) - f(k - 1);
+      if (now.dot(before) >= 0.0) continue;
+      const double one = std::min(now.norm(), before.norm());
+      if (one > swing) swing = one, worst = k;
+    }
+    if (swing > 0.02 * force_scale(s, r))
+      return {at("settles", r, worst, static_cast<int>(t), swing, r.peak, doubts())};
+  }
+  return {};
+}
+
+/// No vertex of the surface is inside a sphere.
+std::vector<Finding> check_penetration(const Scene& s, const Run& r) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ToolValue& t : s.tools) smallest = std::min(smallest, t.radius);
+  if (!(r.penetration > 0.05 * smallest)) return {};
+  return {at("no penetration", r, last_hold(s) - 1, 0, r.penetration, 0.0, doubts())};
+}
+
+}  // namespace
+
+const std::vector<Oracle>& laws_of_physics() {
+  static const std::vector<Oracle> all{
+      {"finite", 0, [](const Scene&) { return true; }, check_finite},
+      {"action and reaction", 0, [](const Scene&) { return true; }, check_reaction},
+      {"no pull", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s); }, check_pull},
+      {"grows with depth", 0,
+       [](const Scene& s) { return is_one_press(s) && !has_inertia(s) && !remembers(s) && s.tools[0].depth <= 1.0; },
+       check_monotone},
+      {"not lost", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s); }, check_lost},
+      {"no force in the air", 0,
+       [](const Scene& s) {
+         return s.load == "none" && s.support_moves == 0.0 && s.tools.size() == 1 && !is_cut(s) && s.jitter == 0.0;
+       },
+       check_free},
+      {"work of a closed path", 0,
+       [](const Scene& s) {
+         return all_paths(s, {"press", "hold", "slide"}) && s.cuts == 0 && s.load == "none" && s.support_moves == 0.0;
+       },
+       check_work},
+      {"settles", 0, [](const Scene& s) { return all_paths(s, {"press", "hold"}) && !has_inertia(s) && !is_cut(s); },
+       check_settled},
+      {"no penetration", 0,
+       [](const Scene& s) { return all_paths(s, {"press", "hold"}) && !is_cut(s) && !has_inertia(s); },
+       check_penetration},
+  };
+  return all;
+}
+
+}  // namespace cross

@@ -1,0 +1,190 @@
+// Tissue behind the interface of tissue.hpp, for a model of any type.
+#pragma once
+
+#include "laws.hpp"
+#include "tissue.hpp"
+
+#include <palpate/concepts/tissue_adaptor.hpp>
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/mesh/promote.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/static/measured_force_error.hpp>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace cross {
+
+/// The model of a scene as it is constructed. `Make` returns a new one as std::unique_ptr<Model>; a pair calls it
+/// twice.
+template <class Model>
+class TissueOf final : public Tissue {
+ public:
+  template <class Make>
+  TissueOf(const Make& make, const Body& body, const TissueOptions& options)
+      : member_(options.member), distance_(10.0 * body.size), model_(make()) {
+    if (member_ == "group" || member_ == "pair")
+      if (!palpate::detail::HooksOnlyPrefetch<Model>)
+        throw std::runtime_error("tissue of this solver cannot be in a group");
+    if (member_ == "pair") second_ = make();
+    if (member_ == "adaptor") adaptor_.emplace(*model_);
+    place();
+  }
+
+  std::unique_ptr<palpate::HapticServo> servo(const palpate::ToolList& tools,
+                                              const palpate::ServoOptions& options) override {
+    if (adaptor_) return std::make_unique<palpate::HapticServo>(*adaptor_, tools, options);
+    if (make_group()) return std::make_unique<palpate::HapticServo>(*group_, tools, options);
+    return std::make_unique<palpate::HapticServo>(*model_, tools, options);
+  }
+  double interval() const override {
+    if constexpr (requires { model_->step(); })
+      return model_->step();
+    else
+      return palpate::HasBackgroundWork<Model> ? 1e-3 : 0.0;
+  }
+  void work() override {
+    if constexpr (requires { model_->step(); })
+      model_->background_work();
+    else if constexpr (palpate::HasBackgroundWork<Model>)
+      while (model_->background_work().worked) continue;
+  }
+  std::unique_ptr<palpate::BackgroundWorker> worker() override {
+    if (adaptor_) return std::make_unique<palpate::BackgroundWorker>(*adaptor_);
+    return std::make_unique<palpate::BackgroundWorker>(*model_);
+  }
+  /// The pose of set_pose stays.
+  void reset() override {
+    model_->reset();
+    if (second_) second_->reset();
+    place();
+  }
+  void set_pose(const Eigen::Isometry3d& pose) override {
+    pose_ = pose;
+    place();
+  }
+  bool cut(const palpate::BladeSweep& sweep) override {
+    if constexpr (requires { model_->cut(sweep); }) {
+      model_->cut(sweep);
+      return true;
+    }
+    return false;
+  }
+  const palpate::SetupReport& report() const override { return model_->report(); }
+  palpate::VectorX displacement(std::span<const palpate::VertexForce> forces) override {
+    if (!group_) return model_->displacement(forces);
+    std::vector<palpate::VertexForce> own(forces.size());
+    own.resize(group_->forces_on(0, forces, own));
+    return model_->displacement(own);
+  }
+  std::vector<palpate::Vector3> surface(std::span<const palpate::VertexForce> forces) override {
+    return group_ ? pressed_surface(*group_, forces) : pressed_surface(*model_, forces);
+  }
+
+ private:
+  template <class T>
+  static std::vector<palpate::Vector3> pressed_surface(T& tissue, std::span<const palpate::VertexForce> forces) {
+    std::vector<int> loaded;
+    for (const palpate::VertexForce& f : forces) loaded.push_back(f.vertex);
+    tissue.require_columns(loaded);
+    std::vector<palpate::Vector3> surface;
+    for (int i = 0; i < tissue.contact_surface().vertex_count(); ++i) {
+      palpate::Vector3 x = tissue.contact_surface().position(i);
+      for (const palpate::VertexForce& f : forces) x += tissue.compliance(i, f.vertex) * f.force.in_model_axes();
+      surface.push_back(tissue.to_world() * x);
+    }
+    return surface;
+  }
+  /// The first is at the pose, so that a group has the frame of a tissue alone.
+  void place() {
+    if (!model_->pose().isApprox(pose_, 0.0)) model_->set_pose(pose_);
+    if (second_) second_->set_pose(pose_ * Eigen::Translation3d(distance_, distance_, 0.0));
+    if (group_) group_->update();
+  }
+  /// Made for the first servo, after the pose is known: a group keeps the frame that its first member had.
+  bool make_group() {
+    if (member_ != "group" && member_ != "pair") return false;
+    if constexpr (palpate::detail::HooksOnlyPrefetch<Model>)
+      if (!group_) {
+        std::vector<Model*> members{model_.get()};
+        if (second_) members.push_back(second_.get());
+        group_.emplace(std::span<Model* const>(members));
+      }
+    return true;
+  }
+
+  std::string member_;
+  double distance_;
+  std::unique_ptr<Model> model_, second_;
+  Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  std::optional<palpate::TissueAdaptor<Model>> adaptor_;
+  std::optional<palpate::TissueGroup> group_;
+};
+
+/// `word` of a solver and, where its models have parameters, `make<Model>(scene, body, construct)`: what
+/// `construct(parameters)` returns.
+template <class Solver>
+struct SolverOf;
+
+/// Whether models of a solver take a cache file.
+template <class Solver>
+inline constexpr bool takes_cache = requires {
+  palpate::SolverTraits<Solver>::cache_name;
+};
+
+/// Columns are computed in the tick that needs them, so that results do not depend on a thread.
+template <class Solver>
+palpate::SetupOptions setup_options(const Scene& scene, const TissueOptions& given) {
+  palpate::SetupOptions options;
+  options.threads = given.threads;
+  options.columns = palpate::ColumnFill::synchronous;
+  if (takes_cache<Solver>) options.cache_file = given.cache_file;
+  if (scene.corrected) options.force_error = palpate::measured_force_error();
+  return options;
+}
+
+/// Calls f with the mesh of an element.
+template <class E, class F>
+auto with_mesh(const Body& body, const F& f) {
+  if constexpr (std::is_same_v<E, palpate::Tet10>)
+    return f(palpate::promote<E>(body.tetrahedra));
+  else if constexpr (std::is_same_v<E, palpate::Hex20>)
+    return f(palpate::promote<E>(body.hexahedra));
+  else if constexpr (E::nodes == 8)
+    return f(body.hexahedra);
+  else
+    return f(body.tetrahedra);
+}
+
+template <class E, class M, class Solver>
+std::unique_ptr<Tissue> make_tissue(const Scene& scene, const Body& body, const TissueOptions& given) {
+  using Model = palpate::HapticFEModel<E, M, Solver>;
+  const palpate::SetupOptions options = setup_options<Solver>(scene, given);
+  return with_mesh<E>(body, [&](const auto& mesh) -> std::unique_ptr<Tissue> {
+    palpate::RegionMaterials<M> materials;
+    for (std::size_t r = 0; r < body.moduli.size(); ++r)
+      materials.emplace_back(mesh.region_names.at(r),
+                             Law<M>::make({body.moduli[r], scene.poisson_ratio, body.density, given.axes}));
+    const auto make = [&] {
+      if constexpr (requires { typename Model::Parameters; })
+        return SolverOf<Solver>::template make<Model>(scene, body, [&](const typename Model::Parameters& parameters) {
+          return std::make_unique<Model>(mesh, body.conditions, materials, options, parameters);
+        });
+      else
+        return std::make_unique<Model>(mesh, body.conditions, materials, options);
+    };
+    return std::make_unique<TissueOf<Model>>(make, body, given);
+  });
+}
+
+template <class E, class M, class Solver>
+Composition composition() {
+  return {element_word<E>, Law<M>::word, SolverOf<Solver>::word, make_tissue<E, M, Solver>};
+}
+
+}  // namespace cross
