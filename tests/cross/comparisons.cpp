@@ -30,9 +30,18 @@ Status excuses() {
 Matrix3 rotation() { return Eigen::AngleAxisd(2.1, Vector3(0.3, -1.0, 0.5).normalized()).toRotationMatrix(); }
 Matrix3 reflection() { return Vector3(1.0, -1.0, 1.0).asDiagonal(); }
 
-/// Relative difference up to which two runs whose rounding differs are equal. Friction and motion remember.
+/// Whether a run repeats to the last bit: not where a thread renews the factor of tissue that is cut.
+bool repeats_exactly(const Scene& s) {
+  return !can_be_cut(s.solver) ||
+         (s.cuts == 0 && std::none_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; }));
+}
+double exactly(const Scene& s) { return repeats_exactly(s) ? 0.0 : 0.02; }
+double almost_exactly(const Scene& s) { return repeats_exactly(s) ? 1e-9 : 0.02; }
+
+/// Relative difference up to which two runs whose rounding differs are equal. Friction and motion remember: where a
+/// contact begins a tick later, the forces after it differ.
 double rounding_tolerance(const Scene& scene) {
-  return moves(scene.solver) || scene.friction > 0.0 || has_float(scene.solver) ? 0.02 : 3e-3;
+  return moves(scene.solver) || scene.friction > 0.0 ? 0.05 : has_float(scene.solver) ? 0.02 : 3e-3;
 }
 
 std::vector<Finding> compare_with(const char* name, const Scene& scene, const Run& run, const Manner& manner,
@@ -40,16 +49,18 @@ std::vector<Finding> compare_with(const char* name, const Scene& scene, const Ru
   return compare(name, scene, run, cross::run(scene, manner), tolerance);
 }
 
+/// Gravity keeps its direction in the world when the pose rotates the body.
+bool has_free_direction(const Scene& s) { return s.load != "gravity" || s.pose == "identity"; }
 bool always(const Scene&) { return true; }
 bool is_alone(const Scene& s) { return s.member == "alone"; }
 bool is_static(const Scene& s) { return !moves(s.solver) && !can_be_cut(s.solver); }
 
-std::vector<Finding> check_repeated(const Scene& s, const Run& r) { return compare_with("repeated", s, r, {}, 0.0); }
+std::vector<Finding> check_repeated(const Scene& s, const Run& r) { return compare_with("repeated", s, r, {}, exactly(s)); }
 std::vector<Finding> check_again(const Scene& s, const Run& r) {
-  return compare_with("played again", s, r, {.plays = 2}, 1e-9);
+  return compare_with("played again", s, r, {.plays = 2}, almost_exactly(s));
 }
 std::vector<Finding> check_new_servo(const Scene& s, const Run& r) {
-  return compare_with("new servo", s, r, {.plays = 2, .new_servo = true}, 1e-9);
+  return compare_with("new servo", s, r, {.plays = 2, .new_servo = true}, almost_exactly(s));
 }
 std::vector<Finding> check_moved(const Scene& s, const Run& r) {
   return compare_with("other pose", s, r, {.pose = s.pose == "identity" ? "rotated" : "identity"}, rounding_tolerance(s));
@@ -79,10 +90,10 @@ std::vector<Finding> check_pair(const Scene& s, const Run& r) {
   return compare_with("group of two", s, r, {.member = "pair"}, rounding_tolerance(s));
 }
 std::vector<Finding> check_adaptor(const Scene& s, const Run& r) {
-  return compare_with("adaptor", s, r, {.member = "adaptor"}, 0.0);
+  return compare_with("adaptor", s, r, {.member = "adaptor"}, exactly(s));
 }
 std::vector<Finding> check_threads(const Scene& s, const Run& r) {
-  return compare_with("three threads", s, r, {.threads = s.threads == 1 ? 3 : 1}, 1e-9);
+  return compare_with("three threads", s, r, {.threads = s.threads == 1 ? 3 : 1}, almost_exactly(s));
 }
 std::vector<Finding> check_cache(const Scene& s, const Run& r) {
   const std::string file =
@@ -195,8 +206,9 @@ const std::vector<Oracle>& comparisons() {
       {"new servo", 2, always, check_new_servo},
       {"other pose", 1, [](const Scene& s) { return s.load != "gravity"; }, check_moved},
       {"shifted", 1, always, check_shifted},
-      {"rotated", 1, always, check_rotated},
-      {"mirrored", 1, always, check_mirrored},
+      {"rotated", 1, has_free_direction, check_rotated},
+      // Faces of hexahedra are divided along a diagonal, their mirror images along the other one.
+      {"mirrored", 1, [](const Scene& s) { return !is_hexahedral(s) && has_free_direction(s); }, check_mirrored},
       {"scaled", 1, [](const Scene& s) { return s.cuts == 0; }, check_scaled},
       {"renumbered", 1, always, check_renumbered},
       {"two equal regions", 1, [](const Scene& s) { return s.regions == "one" && s.element != "smoothed_tet4"; }, check_split},

@@ -25,7 +25,7 @@ using namespace cross;
 struct Arguments {
   std::uint64_t scenes = 200, seed = 1;
   double seconds = 0.0;             // 0: as many as `scenes`
-  std::string only, scene, known = PALPATE_CROSS_KNOWN, out = "cross";
+  std::string only, scene, draw, known = PALPATE_CROSS_KNOWN, out = "cross";
   bool program = false, check_known = false, print = false, all = false;
   int shrinks = 1;                  // per oracle and solver
   int jobs = 0;
@@ -35,6 +35,7 @@ constexpr const char* usage =
     "palpate_cross [SCENES] [--seed N] [--seconds N] [--only PATTERN] [--all] [--out FOLDER] [--known FOLDER]\n"
     "              [--shrinks N] [--jobs N] [--print]\n"
     "palpate_cross --scene FILE [--program]\n"
+    "palpate_cross --draw N\n"
     "palpate_cross --check-known\n\n"
     "  SCENES         number of scenes (default 200), from --seed (default 1) on; --seconds: stop after that time\n"
     "  --only PATTERN only scenes whose element, law or solver is PATTERN, or only the oracle PATTERN\n"
@@ -42,6 +43,7 @@ constexpr const char* usage =
     "  --out FOLDER   for scenes that fail silently, made small, and their programs (default: cross)\n"
     "  --shrinks N    of each kind of failure, how many are made small (default 1)\n"
     "  --scene FILE   judge one scene with all oracles; --program: print it as a C++ program\n"
+    "  --draw N       print the scene of seed N\n"
     "  --check-known  judge the scenes of the folder known: each must still fail\n";
 
 Arguments read_arguments(int count, char** words) {
@@ -56,6 +58,7 @@ Arguments read_arguments(int count, char** words) {
     else if (word == "--seconds") a.seconds = std::stod(next()), a.scenes = ~std::uint64_t{0} / 2;
     else if (word == "--only") a.only = next();
     else if (word == "--scene") a.scene = next();
+    else if (word == "--draw") a.draw = next();
     else if (word == "--known") a.known = next();
     else if (word == "--out") a.out = next();
     else if (word == "--shrinks") a.shrinks = std::stoi(next());
@@ -261,6 +264,7 @@ int check_known(const Arguments& a) {
 int main(int count, char** words) {
   try {
     const Arguments a = read_arguments(count, words);
+    if (!a.draw.empty()) return std::printf("%s", to_text(draw(std::stoull(a.draw))).c_str()) < 0;
     if (!a.scene.empty()) return judge_file(a);
     if (a.check_known) return check_known(a);
     return Sweep(a).run();

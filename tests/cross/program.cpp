@@ -577,7 +577,7 @@ class Program {
   void cuts() {
     if (!can_be_cut(s_.solver)) return;
     for (int i = 0; i < s_.cuts; ++i) {
-      const Place at = place_of(s_, 0.3 + 0.15 * i, 0.5, false);
+      const Place at = place_of(s_, 0.317 + 0.153 * i, 0.523, false);
       const Vector3 across = at.normal.cross(at.along);
       const double half = 3.0 * s_.edge, deep = 0.8 * s_.edge;
       std::vector<std::string> corners;

@@ -37,7 +37,7 @@ ServoOptions options_of(const Scene& scene, const Manner& manner) {
 
 /// A plane through the body across its x axis, which a cut follows for a part of its height.
 BladeSweep sweep_of(const Scene& scene, int number, const Eigen::Isometry3d& pose, const Change& change) {
-  const Place place = place_of(scene, 0.3 + 0.15 * number, 0.5, false);
+  const Place place = place_of(scene, 0.317 + 0.153 * number, 0.523, false);
   const Vector3 across = place.normal.cross(place.along), out = place.normal;
   const double half = 3.0 * scene.edge, deep = 0.8 * scene.edge;
   const auto at = [&](double a, double n) { return pose * change(place.point + a * across + n * out); };

@@ -26,7 +26,7 @@ void add_plainer_values(Scenes& list, const Scene& scene, const Scene& plain, Vi
   values(scene, [&](const char*, const auto&) { ++count; });
   for (int i = 0; i < count; ++i) {
     int k = 0;
-    values(scene, [&](const char*, const auto& now) {
+    values(scene, [&](const char* name, const auto& now) {
       if (k++ != i) return;
       using Value = std::decay_t<decltype(now)>;
       const auto add = [&](const Value& value) {
@@ -48,7 +48,7 @@ void add_plainer_values(Scenes& list, const Scene& scene, const Scene& plain, Vi
       });
       if constexpr (std::is_same_v<Value, double>) add(rounded(now, 1));
       if constexpr (std::is_same_v<Value, int>)
-        if (now > 3) add(now / 2), add(now - 1);
+        if (std::string(name) != "rate" && now > (std::string(name) == "ticks" ? 100 : 3)) add(now / 2);
     });
   }
 }

@@ -1,6 +1,12 @@
 // Lost readings of a tool's pose: the tool does not pass through thin tissue, and no grasp begins by itself.
 #include "contact/servo_session.hpp"
 
+#include <palpate/element/smoothed.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "catch.hpp"
 
 using namespace palpate;
@@ -108,4 +114,24 @@ TEST_CASE("an invalid reading after the surface was lost lifts the tool", "[hapt
   input.take(state, pad.to_world(), surface, {}, tool);
   CHECK(tool.active);
   CHECK(input.restarted());
+}
+
+TEST_CASE("a tool that cannot be read leaves no force on the tissue", "[haptic][servo][extreme][D12]") {
+  // Pressed so deep that the steps of the contact solution have become shorter.
+  using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+  Model pad(box_tet4(Vector3(0.014, 0.014, 0.014), {2, 2, 2}), Scene().fix("z0").touch("z1"),
+            LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
+  HapticServo servo(pad, SphereTool{.radius = 4e-3}, {.coupling_stiffness = 1000.0});
+  ToolState state;
+  for (int k = 0; k < 90; ++k) {
+    state.time = state.now = 1e-3 * k;
+    const double in = 0.5 - 0.5 * std::cos(std::min(1.0, k / 67.0) * std::numbers::pi);
+    state.position = Vector3(0.007, 0.007, 0.020 - 6e-3 * in);
+    state.valid = k < 86;
+    servo.tick(state);
+    if (k == 85) REQUIRE(servo.contact_force().norm() > 0.1);
+  }
+  const ServoSnapshot& snapshot = servo.read_snapshot();
+  for (std::size_t i = 0; i < snapshot.force_count; ++i)
+    CHECK(snapshot.forces[i].force.in_model_axes().norm() == 0.0);
 }

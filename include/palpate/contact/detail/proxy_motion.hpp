@@ -43,7 +43,8 @@ class ProxyMotion {
   /// Change of the tools' forces and torques since `begin`, relative to a force `scale` [N].
   double relative_change(Tools tools, double scale) const noexcept;
   /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
-  /// not converged although the devices hardly move, steps become shorter, until a device moves.
+  /// not converged although the devices hardly move, steps become shorter, until a device moves, or a tool begins or
+  /// ends to take part.
   void end_tick(Tools tools, bool converged) noexcept;
 
  private:
@@ -53,6 +54,7 @@ class ProxyMotion {
   static void rotate(ContactTool& tool, double part) noexcept;
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
+  std::array<bool, maximum_tools> active_{};
   std::array<Ahead, maximum_tools> ahead_{};
   std::array<Vector3, maximum_tools> change_{};  // of the forces, in the last whole step of this tick
   bool changed_ = false;                         // there was such a step

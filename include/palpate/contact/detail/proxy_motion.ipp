@@ -5,6 +5,7 @@
 #include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -29,6 +30,8 @@ PALPATE_INLINE void ProxyMotion::begin(Tools tools, double floor) noexcept {
   clipped_ = false;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
+    // Shorter steps would keep a part of the forces of a tool that is gone.
+    if (std::exchange(active_[t], tool.active) != tool.active) longest_part_ = 1.0;
     start_force_[t] = tool.force;
     start_torque_[t] = tool.torque;
     target_[t] = tool.target;
