@@ -5,6 +5,10 @@
 
 namespace cross {
 
+/// Flags by which a tick reports that its solution is not the only one, or not the final one. That facets are coarse or
+/// displacements large is true of two runs alike.
+palpate::Status excuses();
+
 /// A finding in a tick; flagged if one of the flags of `excuse` is set in it or shortly before.
 Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected,
            palpate::Status excuse);

@@ -81,9 +81,11 @@ class Draw {
     while (is_hexahedral(scene_) && !has_hexahedra(scene_.body));
     const bool quadratic = scene_.element == "tet10" || scene_.element == "hex20";
     const int most = (moves(scene_.solver) || quadratic) ? 5 : 8;
-    scene_.cells_x = integer(2, most), scene_.cells_y = integer(2, most), scene_.cells_z = integer(1, std::max(2, most / 2));
+    scene_.cells_x = integer(2, most), scene_.cells_y = integer(2, most),
+    scene_.cells_z = integer(1, std::max(2, most / 2));
     if (scene_.body == "plate") scene_.cells_z = 1;
-    if (scene_.body == "lobe") scene_.cells_x = integer(4, most + 2), scene_.cells_y = integer(1, 2), scene_.cells_z = 1;
+    if (scene_.body == "lobe")
+      scene_.cells_x = integer(4, most + 2), scene_.cells_y = integer(1, 2), scene_.cells_z = 1;
     if (scene_.body == "tube") scene_.cells_x = integer(4, most + 1), scene_.cells_z = 1;
     if (scene_.body == "sphere" || scene_.body == "organ") scene_.cells_x = integer(2, quadratic ? 2 : 4);
     scene_.edge = logarithmic(1e-3, 10e-3);
@@ -108,25 +110,39 @@ class Draw {
   void tools() {
     scene_.tools.clear();
     const int count = chance(0.6) ? 1 : integer(2, 4);
-    // Facets of 0.2 to 10 radii; mostly about one.
+    // Facets of 0.2 to 10 radii; mostly about one. No tool is larger than half of the body.
     const double ratio = chance(0.7) ? logarithmic(0.4, 2.5) : logarithmic(0.2, 10.0);
+    const double largest = scene_.edge * std::max(scene_.cells_x / 4.0, 2.0);
     for (int t = 0; t < count; ++t) {
       ToolValue tool;
       tool.kind = chance(0.6) ? "sphere" : one_of(std::vector<std::string>{"capsule", "plate"});
       if (can_be_cut(scene_.solver) && chance(0.4)) tool.kind = "blade";
-      tool.radius = rounded(std::clamp(scene_.edge / ratio, 2e-4, 30e-3)) * (t == 0 ? 1.0 : one_of(std::vector<double>{0.5, 1.0, 2.0}));
+      tool.radius = rounded(std::clamp(scene_.edge / ratio, 2e-4, largest)) *
+                    (t == 0 ? 1.0 : one_of(std::vector<double>{0.5, 1.0, 2.0}));
       path(tool);
-      scene_.tools.push_back(tool);
+      for (int trial = 0; trial < 20 && is_crowded(tool); ++trial)
+        tool.u = uniform(0.0, 1.0), tool.v = uniform(0.0, 1.0);
+      if (t == 0 || !is_crowded(tool)) scene_.tools.push_back(tool);
     }
-    if (count > 1 && chance(0.3)) pinch();
+    if (scene_.tools.size() > 1 && chance(0.3)) pinch();
+  }
+
+  /// Whether a tool would overlap another one of the same side.
+  bool is_crowded(const ToolValue& tool) const {
+    const Vector3 point = place_of(scene_, tool.u, tool.v, tool.opposite).point;
+    return std::any_of(scene_.tools.begin(), scene_.tools.end(), [&](const ToolValue& t) {
+      return (place_of(scene_, t.u, t.v, t.opposite).point - point).norm() < 2.2 * (t.radius + tool.radius);
+    });
   }
 
   void path(ToolValue& tool) {
     tool.u = uniform(0.0, 1.0), tool.v = uniform(0.0, 1.0);
     tool.path = chance(0.5) ? "press" : one_of(words_of("path"));
-    const double thickness = scene_.body == "sphere" || scene_.body == "organ" ? scene_.edge * scene_.cells_x
-                                                                            : scene_.edge * scene_.cells_z;
-    tool.depth = tool.kind == "blade" ? uniform(0.3, 1.5) : chance(0.7) ? logarithmic(0.06, 0.5) : logarithmic(0.5, 1.5);
+    const double thickness =
+        scene_.body == "sphere" || scene_.body == "organ" ? scene_.edge * scene_.cells_x : scene_.edge * scene_.cells_z;
+    tool.depth = tool.kind == "blade" ? uniform(0.3, 1.5)
+                 : chance(0.7)        ? logarithmic(0.06, 0.5)
+                                      : logarithmic(0.5, 1.5);
     if (tool.kind != "blade") tool.depth = rounded(std::min(tool.depth, 0.7 * thickness / tool.radius));
     if (tool.path == "slide" || tool.kind == "blade") tool.travel = logarithmic(0.2, 3.0);
     if (tool.kind == "blade") tool.path = "slide";
@@ -140,6 +156,8 @@ class Draw {
     if (scene_.body == "block" && scene_.support == "bottom") scene_.support = "end";
     ToolValue& a = scene_.tools[0];
     if (a.kind == "blade") return;
+    if (!has_opposite(scene_)) return;
+    scene_.tools.resize(2);
     scene_.tools[1] = a;
     scene_.tools[1].opposite = !a.opposite;
   }
@@ -160,7 +178,8 @@ class Draw {
     if (chance(0.25)) scene_.pose = "rotated";
     if (chance(0.25)) scene_.member = can_be_grouped(scene_.solver) ? one_of(words_of("member")) : "adaptor";
     if (moves(scene_.solver)) {
-      scene_.step = scene_.solver.find("newton") != std::string::npos ? one_of(std::vector<double>{0.005, 0.01, 0.02}) : 1e-3;
+      scene_.step =
+          scene_.solver.find("newton") != std::string::npos ? one_of(std::vector<double>{0.005, 0.01, 0.02}) : 1e-3;
       scene_.inertia = chance(0.5);
     }
     if (can_be_cut(scene_.solver) && chance(0.4)) scene_.cuts = integer(1, 3);
@@ -213,7 +232,9 @@ bool can_meet(const Choice& a, const Choice& b) {
 
 }  // namespace
 
-Scene draw(std::uint64_t number) { return Draw(number).scene(); }
+Scene draw(std::uint64_t number) {
+  return Draw(number).scene();
+}
 
 std::vector<std::pair<std::string, std::string>> choices_of(const Scene& s) {
   std::vector<std::pair<std::string, std::string>> choices;
@@ -246,10 +267,10 @@ std::vector<std::string> Coverage::all() {
   // Every word of every axis, and the ranges that choices_of distinguishes.
   std::vector<std::vector<Choice>> axes;
   for (const auto& [axis, ranges] : std::vector<std::pair<const char*, int>>{
-           {"body", 0}, {"regions", 0}, {"touched", 0}, {"support", 0}, {"element", 0}, {"law", 0}, {"solver", 0},
-           {"load", 0}, {"pose", 0}, {"member", 0}, {"tool", 0}, {"path", 0}, {"tools", 2}, {"grasps", 2},
-           {"facets", 3}, {"depth", 3}, {"friction", 2}, {"contrast", 3}, {"poisson_ratio", 4}, {"cuts", 2},
-           {"threads", 2}, {"rate", 3}}) {
+           {"body", 0},          {"regions", 0}, {"touched", 0}, {"support", 0}, {"element", 0},  {"law", 0},
+           {"solver", 0},        {"load", 0},    {"pose", 0},    {"member", 0},  {"tool", 0},     {"path", 0},
+           {"tools", 2},         {"grasps", 2},  {"facets", 3},  {"depth", 3},   {"friction", 2}, {"contrast", 3},
+           {"poisson_ratio", 4}, {"cuts", 2},    {"threads", 2}, {"rate", 3}}) {
     axes.emplace_back();
     for (const std::string& word : words_of(std::string(axis) == "tool" ? "kind" : axis))
       axes.back().emplace_back(axis, word);

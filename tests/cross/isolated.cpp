@@ -56,6 +56,8 @@ bool read_lines(const std::string& text, Verdict& v) {
   setrlimit(RLIMIT_CPU, &time);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
+  for (const int one : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM})
+    std::signal(one, SIG_DFL);  // not the handlers of a test program
   std::string text;
   try {
     text = to_lines(judge(scene, choose));
@@ -87,7 +89,8 @@ Verdict judge_isolated(const Scene& scene, const std::function<bool(const Oracle
   close(ends[1]);
   std::string text;
   char buffer[4096];
-  for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(got));
+  for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
+    text.append(buffer, static_cast<std::size_t>(got));
   close(ends[0]);
   int status = 0;
   waitpid(process, &status, 0);

@@ -24,10 +24,10 @@ using namespace cross;
 
 struct Arguments {
   std::uint64_t scenes = 200, seed = 1;
-  double seconds = 0.0;             // 0: as many as `scenes`
+  double seconds = 0.0;  // 0: as many as `scenes`
   std::string only, scene, draw, known = PALPATE_CROSS_KNOWN, out = "cross";
   bool program = false, check_known = false, print = false, all = false;
-  int shrinks = 1;                  // per oracle and solver
+  int shrinks = 1;  // per oracle and solver
   int jobs = 0;
 };
 
@@ -54,21 +54,36 @@ Arguments read_arguments(int count, char** words) {
       if (i + 1 >= count) throw std::runtime_error(word + " needs a value");
       return std::string(words[++i]);
     };
-    if (word == "--seed") a.seed = std::stoull(next());
-    else if (word == "--seconds") a.seconds = std::stod(next()), a.scenes = ~std::uint64_t{0} / 2;
-    else if (word == "--only") a.only = next();
-    else if (word == "--scene") a.scene = next();
-    else if (word == "--draw") a.draw = next();
-    else if (word == "--known") a.known = next();
-    else if (word == "--out") a.out = next();
-    else if (word == "--shrinks") a.shrinks = std::stoi(next());
-    else if (word == "--jobs") a.jobs = std::stoi(next());
-    else if (word == "--program") a.program = true;
-    else if (word == "--check-known") a.check_known = true;
-    else if (word == "--print") a.print = true;
-    else if (word == "--all") a.all = true;
-    else if (word[0] == '-') throw std::runtime_error("unknown option " + word);
-    else a.scenes = std::stoull(word);
+    if (word == "--seed")
+      a.seed = std::stoull(next());
+    else if (word == "--seconds")
+      a.seconds = std::stod(next()), a.scenes = ~std::uint64_t{0} / 2;
+    else if (word == "--only")
+      a.only = next();
+    else if (word == "--scene")
+      a.scene = next();
+    else if (word == "--draw")
+      a.draw = next();
+    else if (word == "--known")
+      a.known = next();
+    else if (word == "--out")
+      a.out = next();
+    else if (word == "--shrinks")
+      a.shrinks = std::stoi(next());
+    else if (word == "--jobs")
+      a.jobs = std::stoi(next());
+    else if (word == "--program")
+      a.program = true;
+    else if (word == "--check-known")
+      a.check_known = true;
+    else if (word == "--print")
+      a.print = true;
+    else if (word == "--all")
+      a.all = true;
+    else if (word[0] == '-')
+      throw std::runtime_error("unknown option " + word);
+    else
+      a.scenes = std::stoull(word);
   }
   return a;
 }
@@ -110,7 +125,8 @@ class Sweep {
 
   int run() {
     std::filesystem::create_directories(a_.out);
-    const unsigned jobs = a_.jobs > 0 ? static_cast<unsigned>(a_.jobs) : std::max(1u, std::thread::hardware_concurrency());
+    const unsigned jobs =
+        a_.jobs > 0 ? static_cast<unsigned>(a_.jobs) : std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::thread> threads;
     for (unsigned j = 0; j < jobs; ++j) threads.emplace_back([this] { work(); });
     for (std::thread& t : threads) t.join();
@@ -121,9 +137,7 @@ class Sweep {
   }
 
  private:
-  double elapsed() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   void work() {
     for (;;) {
@@ -161,7 +175,8 @@ class Sweep {
         ++n[2];
         continue;
       }
-      const auto cause = std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.matches(scene, f); });
+      const auto cause =
+          std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.matches(scene, f); });
       if (cause != known_.end()) {
         ++n[1], ++counts_.known[cause->file];
         continue;
@@ -185,14 +200,16 @@ class Sweep {
       if (find_composition(s.element, s.law, s.solver) == nullptr) return false;
       if (is_hexahedral(s) && !has_hexahedra(s.body)) return false;
       if (!is_crash && !find_oracle(finding.oracle).applies(s)) return false;
-      const Verdict v = judge_isolated(s, [&](const Oracle& o) { return is_crash ? is_chosen(o, number, a_) : only(o); });
+      const Verdict v =
+          judge_isolated(s, [&](const Oracle& o) { return is_crash ? is_chosen(o, number, a_) : only(o); });
       return std::any_of(v.findings.begin(), v.findings.end(),
                          [&](const Finding& f) { return f.oracle == finding.oracle && !f.flagged; });
     };
     if (!fails(scene)) return note("scene " + std::to_string(number) + " fails only sometimes: " + finding.oracle);
     const Scene small = shrink(scene, fails);
     std::string name = finding.oracle + "-" + scene.solver + "-" + std::to_string(number);
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '\''; }, '_');
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ' ' || c == '\''; }, '_');
     const std::filesystem::path base = std::filesystem::path(a_.out) / name;
     std::ofstream(base.string() + ".scene") << "# oracle: " << finding.oracle << "\n# found by scene " << number << "\n"
                                             << to_text(small);
@@ -207,10 +224,11 @@ class Sweep {
   }
 
   void report() const {
-    std::printf("\n%llu scenes in %.0f s, %llu refused, %llu ticks of tools, %.2f %% of them with a flag\n",
-                static_cast<unsigned long long>(counts_.scenes), elapsed(),
-                static_cast<unsigned long long>(counts_.refused), static_cast<unsigned long long>(counts_.ticks),
-                100.0 * static_cast<double>(counts_.doubted) / std::max<double>(1.0, static_cast<double>(counts_.ticks)));
+    std::printf(
+        "\n%llu scenes in %.0f s, %llu refused, %llu ticks of tools, %.2f %% of them with a flag\n",
+        static_cast<unsigned long long>(counts_.scenes), elapsed(), static_cast<unsigned long long>(counts_.refused),
+        static_cast<unsigned long long>(counts_.ticks),
+        100.0 * static_cast<double>(counts_.doubted) / std::max<double>(1.0, static_cast<double>(counts_.ticks)));
     for (const auto& [kind, n] : counts_.refusals) std::printf("  refused as %s: %ld\n", kind.c_str(), n);
     std::printf("\n| oracle | silent | known | flagged |\n|---|---|---|---|\n");
     for (const auto& [name, n] : counts_.oracles)
@@ -241,8 +259,8 @@ int judge_file(const Arguments& a) {
     return 0;
   }
   const Verdict v = judge_isolated(scene, [&](const Oracle& o) { return a.only.empty() || o.name == a.only; });
-  std::printf("%s%ld ticks of tools, %ld with a flag\n", v.refused.empty() ? "" : (v.refused + ", ").c_str(), v.alarms.ticks,
-              v.alarms.doubted);
+  std::printf("%s%ld ticks of tools, %ld with a flag\n", v.refused.empty() ? "" : (v.refused + ", ").c_str(),
+              v.alarms.ticks, v.alarms.doubted);
   bool silent = false;
   for (const Finding& f : v.findings) print(f), silent = silent || !f.flagged;
   return silent ? 1 : 0;

@@ -14,8 +14,8 @@ struct Finding {
   std::string oracle;
   int tick = 0, tool = 0;
   double found = 0.0, expected = 0.0;
-  bool flagged = false;   ///< a status flag, a note or a refusal reported it
-  std::string flags{};    ///< names of the flags
+  bool flagged = false;  ///< a status flag, a note or a refusal reported it
+  std::string flags{};   ///< names of the flags
 };
 
 /// A check. `applies` is cheap; `check` may run the scene in other manners.

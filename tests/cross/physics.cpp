@@ -14,9 +14,12 @@ namespace {
 bool has_inertia(const Scene& s) {
   return moves(s.solver) && !(s.solver.find("quasi_newton") != std::string::npos && !s.inertia);
 }
-bool remembers(const Scene& s) { return s.law == "viscoelastic"; }
+bool remembers(const Scene& s) {
+  return s.law == "viscoelastic";
+}
 bool is_cut(const Scene& s) {
-  return s.cuts > 0 || std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
+  return s.cuts > 0 ||
+         std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
 }
 bool grasps(const Scene& s) {
   return std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.grasps; });
@@ -38,8 +41,7 @@ double force_scale(const Scene& s, const Run& r) {
 std::vector<Finding> check_finite(const Scene&, const Run& r) {
   for (std::size_t k = 0; k < r.ticks.size(); ++k)
     for (std::size_t t = 0; t < r.ticks[k].size(); ++t)
-      if (!r.ticks[k][t].finite)
-        return {at("finite", r, static_cast<int>(k), static_cast<int>(t), 0.0, 0.0, {})};
+      if (!r.ticks[k][t].finite) return {at("finite", r, static_cast<int>(k), static_cast<int>(t), 0.0, 0.0, {})};
   return {};
 }
 
@@ -47,9 +49,7 @@ std::vector<Finding> check_finite(const Scene&, const Run& r) {
 std::vector<Finding> check_reaction(const Scene& s, const Run& r) {
   for (std::size_t k = 0; k < r.imbalance.size(); ++k)
     if (!(r.imbalance[k] <= 1e-6 * force_scale(s, r)))
-      if (Finding f = at("action and reaction", r, static_cast<int>(k), 0, r.imbalance[k], 0.0,
-                         StatusFlag::solver_not_converged);
-          !f.flagged)
+      if (Finding f = at("action and reaction", r, static_cast<int>(k), 0, r.imbalance[k], 0.0, excuses()); !f.flagged)
         return {f};
   return {};
 }
@@ -178,10 +178,15 @@ const std::vector<Oracle>& laws_of_physics() {
          return all_paths(s, {"press", "hold", "slide"}) && s.cuts == 0 && s.load == "none" && s.support_moves == 0.0;
        },
        check_work},
-      {"settles", 0, [](const Scene& s) { return all_paths(s, {"press", "hold"}) && !has_inertia(s) && !is_cut(s); },
+      {"settles", 0,
+       [](const Scene& s) {
+         return all_paths(s, {"press", "hold"}) && !has_inertia(s) && !is_cut(s);
+       },
        check_settled},
       {"no penetration", 0,
-       [](const Scene& s) { return all_paths(s, {"press", "hold"}) && !is_cut(s) && !has_inertia(s); },
+       [](const Scene& s) {
+         return all_paths(s, {"press", "hold"}) && !is_cut(s) && !has_inertia(s);
+       },
        check_penetration},
   };
   return all;

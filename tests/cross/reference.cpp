@@ -12,11 +12,11 @@ using namespace palpate;
 
 namespace {
 
-/// Coordinates in 0 ... size: cells of `fine` within `reach` of `centre`, longer by a half each beyond.
-std::vector<double> graded(double size, double centre, double reach, double fine) {
+/// Coordinates from `low` to `high`: cells of `fine` within `reach` of `centre`, longer by a half each beyond.
+std::vector<double> graded(double low, double high, double centre, double reach, double fine) {
   std::vector<double> x{centre};
   for (const double side : {-1.0, 1.0}) {
-    const double limit = side < 0.0 ? centre : size - centre;
+    const double limit = side < 0.0 ? centre - low : high - centre;
     double at = 0.0, step = fine;
     std::vector<double> one;
     while (at < limit) {
@@ -29,12 +29,14 @@ std::vector<double> graded(double size, double centre, double reach, double fine
     for (const double d : one) x.push_back(centre + side * d);
   }
   std::sort(x.begin(), x.end());
-  x.erase(std::unique(x.begin(), x.end(), [size](double a, double b) { return b - a < 1e-9 * size; }), x.end());
-  x.front() = 0.0, x.back() = size;
+  x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a < 1e-9 * (high - low); }), x.end());
+  x.front() = low, x.back() = high;
   return x;
 }
 
-double contact_radius(const Scene& s) { return std::sqrt(s.tools[0].depth) * s.tools[0].radius; }
+double contact_radius(const Scene& s) {
+  return std::sqrt(s.tools[0].depth) * s.tools[0].radius;
+}
 
 }  // namespace
 
@@ -51,9 +53,10 @@ Body reference_body(const Scene& s) {
   const Vector3 size = s.edge * Vector3(s.cells_x, s.cells_y, s.cells_z);
   const Place place = place_of(s, s.tools[0].u, s.tools[0].v, false);
   const double a = contact_radius(s), fine = a / 4.0, reach = 1.3 * a;
-  std::vector<double> z = graded(size[2], size[2], reach, fine);
-  Mesh<Tet4> mesh = box_tet4(graded(size[0], place.point[0], reach, fine),
-                             graded(size[1], place.point[1], reach, fine), z);
+  const double half_x = 0.5 * size[0], half_y = 0.5 * size[1];  // boxes are in the middle of x and y: bodies.cpp
+  Mesh<Tet4> mesh =
+      box_tet4(graded(-half_x, half_x, place.point[0], reach, fine),
+               graded(-half_y, half_y, place.point[1], reach, fine), graded(0.0, size[2], size[2], reach, fine));
   Body body;
   if (s.support == "bottom") body.conditions.fix("z0");
   if (s.support != "bottom") body.conditions.fix("x0");
@@ -70,8 +73,8 @@ Body reference_body(const Scene& s) {
 
 namespace {
 
-/// A force that is not flagged is within its own bound or a tenth of the reference; ticks in which a flag is set although
-/// the force is within 5 % are counted by `judge`.
+/// A force that is not flagged is within its own bound or a tenth of the reference; ticks in which a flag is set
+/// although the force is within 5 % are counted by `judge`.
 std::vector<Finding> check_reference(const Scene& s, const Run& r) {
   const Run fine = cross::run(s, {.member = "alone", .pose = "identity", .capacity = 1000, .reference = true});
   if (!fine.refused.empty()) return {};

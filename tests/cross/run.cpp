@@ -57,9 +57,10 @@ class Player {
     options.member = manner.member.empty() ? scene.member : manner.member;
     options.axes = manner.change.linear;
     const Body body = manner.reference ? reference_body(scene) : make_body(scene, manner.change);
-    const Composition* composition =
-        manner.reference ? find_composition("tet10", "linear", "condensed") : find_composition(element, scene.law, solver);
-    if (composition == nullptr) throw std::runtime_error("no composition " + element + ", " + scene.law + ", " + solver);
+    const Composition* composition = manner.reference ? find_composition("tet10", "linear", "condensed")
+                                                      : find_composition(element, scene.law, solver);
+    if (composition == nullptr)
+      throw std::runtime_error("no composition " + element + ", " + scene.law + ", " + solver);
     Scene built = scene;
     built.solver = composition->solver;
     built.element = composition->element;
@@ -99,8 +100,7 @@ class Player {
     for (int tick = 0; tick < ticks; ++tick) {
       const double now = static_cast<double>(tick) / scene_.rate;
       for (int i = 0; i < scene_.cuts; ++i)
-        if (tick == (i + 1) * ticks / (scene_.cuts + 2))
-          tissue_->cut(sweep_of(scene_, i, pose_, manner_.change));
+        if (tick == (i + 1) * ticks / (scene_.cuts + 2)) tissue_->cut(sweep_of(scene_, i, pose_, manner_.change));
       if (!worker_ && tissue_->interval() > 0.0)
         for (; due <= now; due += tissue_->interval()) tissue_->work();
       one_tick(tick);
@@ -110,7 +110,9 @@ class Player {
     worker_.reset();
   }
 
-  Vector3 back(const Vector3& force) const { return manner_.change.linear.transpose() * (pose_.linear().transpose() * force); }
+  Vector3 back(const Vector3& force) const {
+    return manner_.change.linear.transpose() * (pose_.linear().transpose() * force);
+  }
 
   void one_tick(int tick) {
     const std::size_t count = scene_.tools.size();
@@ -134,7 +136,8 @@ class Player {
       r.status = forces[t].status;
       r.bound = servo_->force_error(t).bound / (s * s);
       r.depth = depth_of(scene_, t, tick);
-      r.finite = force.allFinite() && torque.allFinite() && forces[t].force().allFinite() && forces[t].torque().allFinite();
+      r.finite =
+          force.allFinite() && torque.allFinite() && forces[t].force().allFinite() && forces[t].torque().allFinite();
       if (scene_.tools[t].kind != "blade") sum += force;
       run_.peak = std::max(run_.peak, r.force.norm());
     }

@@ -11,8 +11,12 @@ namespace cross {
 
 namespace {
 
-std::string text_of(const std::string& value) { return value; }
-std::string text_of(bool value) { return value ? "1" : "0"; }
+std::string text_of(const std::string& value) {
+  return value;
+}
+std::string text_of(bool value) {
+  return value ? "1" : "0";
+}
 template <class Number>
 std::string text_of(Number value) {
   char text[40];

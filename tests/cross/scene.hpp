@@ -25,38 +25,38 @@ struct ToolValue {
 /// Lengths in metres; the defaults are the plainest scene. Words that are allowed: scene.cpp.
 struct Scene {
   // Body
-  std::string body = "block";        ///< block, plate, lobe, dome, tube, sphere, organ
-  double edge = 6e-3;                ///< length of a cell [m]
+  std::string body = "block";                 ///< block, plate, lobe, dome, tube, sphere, organ
+  double edge = 6e-3;                         ///< length of a cell [m]
   int cells_x = 6, cells_y = 6, cells_z = 3;  ///< of sphere and organ: the first is the number of layers
-  double jitter = 0.0;               ///< of nodes inside, in edges
-  int slivers = 0;                   ///< tetrahedra made almost flat
-  std::string regions = "one";       ///< one, layer, half, inclusion
-  double contrast = 1.0;             ///< Young's modulus of the second region, relative
-  std::string touched = "top";       ///< top, surface
-  std::string support = "bottom";    ///< bottom, sides, end
+  double jitter = 0.0;                        ///< of nodes inside, in edges
+  int slivers = 0;                            ///< tetrahedra made almost flat
+  std::string regions = "one";                ///< one, layer, half, inclusion
+  double contrast = 1.0;                      ///< Young's modulus of the second region, relative
+  std::string touched = "top";                ///< top, surface
+  std::string support = "bottom";             ///< bottom, sides, end
   // Tissue
   std::string element = "tet4", law = "linear", solver = "condensed";  ///< words of compositions.hpp
   double youngs_modulus = 5e3, poisson_ratio = 0.4, density = 1000.0;
   // Loads
-  std::string load = "none";         ///< none, gravity, pressure, traction, body, point, swelling
-  double load_size = 0.0;            ///< strain that the load causes, roughly
-  double support_moves = 0.0;        ///< displacement of the support across the body, in edges
+  std::string load = "none";   ///< none, gravity, pressure, traction, body, point, swelling
+  double load_size = 0.0;      ///< strain that the load causes, roughly
+  double support_moves = 0.0;  ///< displacement of the support across the body, in edges
   // Contact
   double friction = 0.0;
-  double coupling = 1000.0;          ///< stiffness [N/m]
-  int capacity = 0;                  ///< of contacts; 0: the default
-  bool corrected = false;            ///< ServoOptions::corrected_force
+  double coupling = 1000.0;  ///< stiffness [N/m]
+  int capacity = 0;          ///< of contacts; 0: the default
+  bool corrected = false;    ///< ServoOptions::corrected_force
   // How it runs
-  int rate = 1000;                   ///< ticks per second
+  int rate = 1000;  ///< ticks per second
   int ticks = 300;
   int threads = 1;
-  double step = 0.01;                ///< of moving tissue [s]
-  bool inertia = true;               ///< of tissue on quasi_newton
-  std::string pose = "identity";     ///< identity, rotated
-  std::string member = "alone";      ///< alone, group, pair, adaptor
-  int cuts = 0;                      ///< orders of cuts beside the blade's, at even times
+  double step = 0.01;             ///< of moving tissue [s]
+  bool inertia = true;            ///< of tissue on quasi_newton
+  std::string pose = "identity";  ///< identity, rotated
+  std::string member = "alone";   ///< alone, group, pair, adaptor
+  int cuts = 0;                   ///< orders of cuts beside the blade's, at even times
   std::vector<ToolValue> tools{ToolValue{}};
-  std::uint64_t seed = 1;            ///< of jitter and slivers
+  std::uint64_t seed = 1;  ///< of jitter and slivers
 
   bool operator==(const Scene&) const = default;
 };

@@ -1,0 +1,179 @@
+// The parts of palpate_cross: what is drawn, what the oracles see, how scenes are made small.
+#include "draw.hpp"
+#include "comparisons.hpp"
+#include "isolated.hpp"
+#include "known.hpp"
+#include "shrink.hpp"
+
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "catch.hpp"
+
+using namespace cross;
+using palpate::StatusFlag;
+using palpate::Vector3;
+
+namespace {
+
+/// A run of the plain scene in which the force is the depth times a stiffness of 10 N/m.
+Run linear_run(const Scene& scene) {
+  Run run;
+  for (int k = 0; k < ticks_of(scene); ++k) {
+    ToolTick t;
+    t.depth = depth_of(scene, 0, k);
+    t.position = Vector3(0.0, 0.0, -t.depth);
+    t.force = Vector3(0.0, 0.0, 10.0 * std::max(0.0, t.depth));
+    run.peak = std::max(run.peak, t.force.norm());
+    run.ticks.push_back({t});
+    run.imbalance.push_back(0.0);
+  }
+  run.work_in = run.peak * run.peak / 20.0;
+  return run;
+}
+std::vector<Finding> check(const char* oracle, const Scene& scene, const Run& run) {
+  return find_oracle(oracle).check(scene, run);
+}
+int middle_of_hold(const Scene& s) {
+  return (first_hold(s) + last_hold(s)) / 2;
+}
+ToolTick& tick_of(Run& run, int k) {
+  return run.ticks[static_cast<std::size_t>(k)][0];
+}
+
+}  // namespace
+
+TEST_CASE("the same number draws the same scene, and its text is the scene", "[cross]") {
+  for (std::uint64_t number = 1; number <= 300; ++number) {
+    const Scene scene = draw(number);
+    CHECK(scene == draw(number));
+    CHECK_FALSE(scene == draw(number + 1));
+    CHECK(find_composition(scene.element, scene.law, scene.solver) != nullptr);
+    std::istringstream text(to_text(scene));
+    CHECK(from_text(text) == scene);
+  }
+  for (const char* wrong : {"bodyy block", "body cube", "edge x", "edge", "tool 1 radius 1", "tool x"}) {
+    std::istringstream text(wrong);
+    CHECK_THROWS_AS(from_text(text), std::runtime_error);
+  }
+}
+
+TEST_CASE("drawn scenes cover nearly all pairs of choices that can meet", "[cross]") {
+  Coverage coverage;
+  for (std::uint64_t number = 1; number <= 20000; ++number) coverage.add(draw(number));
+  const auto missing = coverage.missing();
+  INFO((missing.empty() ? std::string() : missing.front()));
+  CHECK(Coverage::all().size() > 3000);
+  CHECK(missing.empty());
+}
+
+TEST_CASE("a comparison sees what differs, and what a flag reports", "[cross]") {
+  const Scene scene;
+  const Run run = linear_run(scene);
+  Run other = run;
+  CHECK(compare("same", scene, run, other, 0.0).empty());
+  const int k = middle_of_hold(scene);
+  tick_of(other, k).force *= 1.01;
+  CHECK(compare("same", scene, run, other, 0.02).empty());
+  REQUIRE(compare("same", scene, run, other, 0.0).size() == 1);
+  for (int i = -2; i <= 2; ++i) tick_of(other, k + i).force *= 1.2;  // longer than a tick of delay
+  REQUIRE(compare("same", scene, run, other, 0.02).size() == 1);
+  CHECK_FALSE(compare("same", scene, run, other, 0.02).front().flagged);
+  tick_of(other, k - 3).status.set(StatusFlag::solver_not_converged);
+  CHECK(compare("same", scene, run, other, 0.02).front().flagged);
+  CHECK_FALSE(compare("same", scene, run, other, 0.0).front().flagged);  // equal bits have no excuse
+  other.refused = "too_large";
+  CHECK_FALSE(compare("same", scene, run, other, 0.02).front().flagged);
+}
+
+TEST_CASE("the laws of physics see a force that is wrong, unless it is flagged", "[cross]") {
+  const Scene scene;
+  const Run right = linear_run(scene);
+  const auto law = GENERATE(as<std::string>(), "finite", "action and reaction", "no pull", "grows with depth",
+                            "not lost", "no force in the air", "work of a closed path", "settles", "no penetration");
+  INFO(law);
+  REQUIRE(find_oracle(law).applies(scene));
+  CHECK(check(law.c_str(), scene, right).empty());
+  Run wrong = right;
+  const int k = middle_of_hold(scene);
+  if (law == "finite") tick_of(wrong, k).finite = false;
+  if (law == "action and reaction") wrong.imbalance[static_cast<std::size_t>(k)] = 0.01 * right.peak;
+  if (law == "no pull") tick_of(wrong, k).force = {0.0, 0.0, -0.1 * right.peak};
+  if (law == "grows with depth") tick_of(wrong, first_hold(scene) - 3).force *= 0.9;
+  if (law == "not lost") tick_of(wrong, k).force.setZero();
+  if (law == "no force in the air") tick_of(wrong, 2).force = {0.0, 0.0, 0.1 * right.peak};
+  if (law == "work of a closed path") wrong.work = -0.1 * wrong.work_in;
+  if (law == "settles")
+    for (int i = first_hold(scene); i < last_hold(scene); i += 2) tick_of(wrong, i).force *= 1.1;
+  if (law == "no penetration") wrong.penetration = 0.2 * scene.tools[0].radius;
+  REQUIRE(check(law.c_str(), scene, wrong).size() == 1);
+  CHECK_FALSE(check(law.c_str(), scene, wrong).front().flagged);
+  if (law == "finite" || law == "action and reaction") return;  // no flag excuses these
+  for (auto& tick : wrong.ticks) tick[0].status.set(StatusFlag::coarse_contact);
+  CHECK(check(law.c_str(), scene, wrong).front().flagged);
+}
+
+TEST_CASE("the plainest scene passes, and a reference has its force", "[cross]") {
+  Scene scene;
+  scene.edge = 3e-3;
+  scene.cells_x = scene.cells_y = 8, scene.cells_z = 4;
+  scene.element = "smoothed_tet4";
+  const Verdict v = judge(scene, [](const Oracle& o) { return o.cost <= 1.0; });
+  CHECK(v.refused.empty());
+  for (const Finding& f : v.findings) {
+    INFO(f.oracle << ' ' << f.tick << ' ' << f.found << ' ' << f.expected << ' ' << f.flags);
+    CHECK(f.flagged);
+  }
+  // On facets of half a radius the force is within 15 % of that on the fine mesh, and of the half-space for a thick
+  // body.
+  Manner fine;
+  fine.reference = true;
+  fine.capacity = 1000;
+  const std::size_t k = static_cast<std::size_t>(middle_of_hold(scene));
+  const double reference = run(scene, fine).ticks[k][0].force.norm(), own = run(scene).ticks[k][0].force.norm();
+  CHECK(reference > 0.0);
+  CHECK(std::abs(own - reference) < 0.2 * reference);
+}
+
+TEST_CASE("a scene is made small while it fails", "[cross]") {
+  Scene scene = draw(7);
+  scene.friction = 0.37;
+  scene.tools = {ToolValue{}, ToolValue{.kind = "capsule", .depth = 0.4}, ToolValue{.u = 0.2}};
+  scene.regions = "half";
+  const auto fails = [](const Scene& s) {
+    for (const ToolValue& t : s.tools)
+      if (t.kind == "capsule" && s.friction > 0.1) return true;
+    return false;
+  };
+  const Scene small = shrink(scene, fails, 1000);
+  CHECK(fails(small));
+  CHECK(size_of(small) <= 4);  // friction, the tool, and what the shrinking keeps: its radius and depth
+  CHECK(small.tools.size() == 1);
+}
+
+TEST_CASE("a crash, an exception and an endless scene are findings", "[cross]") {
+  const Scene scene;
+  const auto found = [&](auto&& choose) {
+    const Verdict v = judge_isolated(scene, choose, 2);
+    return v.findings.empty() ? std::string() : v.findings.front().oracle;
+  };
+  CHECK(found([](const Oracle&) { return false; }).empty());
+  CHECK(found([](const Oracle&) -> bool { std::abort(); }) == "crash");
+  CHECK(found([](const Oracle&) -> bool { throw std::runtime_error("no"); }) == "exception");
+  CHECK(found([](const Oracle&) -> bool {
+          for (;;) std::this_thread::yield();
+        }) == "endless");
+}
+
+TEST_CASE("known failures have a cause and match only where they apply", "[cross]") {
+  for (const Known& k : read_known(PALPATE_CROSS_KNOWN)) {
+    INFO(k.file);
+    Finding finding;
+    finding.oracle = k.oracle;
+    CHECK(k.matches(k.scene, finding));
+    finding.oracle = "another";
+    CHECK_FALSE(k.matches(k.scene, finding));
+  }
+}
