@@ -97,6 +97,20 @@ TEST_CASE("a blade's force is toughness times edge length, and its sweeps are co
   }
 }
 
+TEST_CASE("the force of a blade that is in tissue in part is toughness times that part", "[haptic][blade]") {
+  SweptTissue tissue;  // its side is at y = 30 mm
+  for (double outside = -4.9e-3; outside < 5e-3; outside += 3.7e-4) {
+    HapticServo servo(tissue, blade);
+    for (int k = 0; k < 400; ++k) {
+      ToolState s = at(height(k), k);
+      s.position[1] = 0.03 + outside;
+      servo.tick(s);
+    }
+    INFO("middle of the edge " << 1e3 * outside << " mm outside");
+    CHECK_THAT(servo.contact_force()[2], Catch::Matchers::WithinAbs(100.0 * (5e-3 - outside), 2e-3));
+  }
+}
+
 TEST_CASE("a snapshot contains a blade as a cutting contact and can be printed", "[haptic][blade]") {
   SweptTissue tissue;
   ServoOptions options;
