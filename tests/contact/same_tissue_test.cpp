@@ -106,6 +106,12 @@ TEST_CASE("a still tissue is the same through adaptors and in a group of one", "
     const auto ticks = testing::detail::run_session(tissue, SphereTool{.radius = radius}, path, {});
     CHECK(std::ranges::any_of(ticks, [](const auto& t) { return t.status.has(StatusFlag::large_displacement); }));
   }
+  SECTION("moved by loads since its set-up") {
+    tissue.set_conditions(Scene().fix("z0").touch("z1").traction("z1", Vector3(400.0, -100.0, -600.0)));
+    const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height, 3e-3);
+    check_still(tissue, SphereTool{.radius = radius}, path);
+    check_still(tissue, CapsuleTool(radius, 3e-3), path, {.contact = {.friction = 0.3}});
+  }
   SECTION("with a sphere smaller than its facets") {
     const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height - radius + 1e-3, 0.4e-3);
     check_still(tissue, SphereTool{.radius = 1e-3}, path);

@@ -34,8 +34,14 @@ PALPATE_INLINE Vector3 TissueGroup::Member::placed(const Vector3& x) const noexc
 
 PALPATE_INLINE void TissueGroup::build() {
   if (members_.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no members");
-  surface_ = ContactSurface(moved_, std::move(triangles_));
-  surface_.set_unloaded(unloaded());
+  // That of a single member is copied: its contact points are those of the surface at the member's set-up, which loads or
+  // a pose may have moved since.
+  if (members_.size() == 1) {
+    surface_ = members_.front().tissue.contact_surface();
+  } else {
+    surface_ = ContactSurface(moved_, std::move(triangles_));
+    surface_.set_unloaded(unloaded());
+  }
   surface_.set_materials(materials());
   join_errors();
   own_.resize(moved_.size());
@@ -55,7 +61,7 @@ PALPATE_INLINE void TissueGroup::add_shells() {
     }
     for (const Vector3& x : own.shell_positions()) moved_.push_back(m.placed(x));
   }
-  surface_.add_shell(std::span(moved_).subspan(vertices), shell);
+  if (members_.size() > 1) surface_.add_shell(std::span(moved_).subspan(vertices), shell);
 }
 
 PALPATE_INLINE ContactSurface::Unloaded TissueGroup::unloaded() const {
