@@ -243,6 +243,69 @@ TEST_CASE("the last tick before a reset may name vertices that the reset drops",
   CHECK(tissue.contact_surface().vertex_count() == vertices);
 }
 
+TEMPLATE_TEST_CASE("vertices keep their nodes over cuts and resets", "[cut][moving]", Tet4, Smoothed<Tet4>, Tet10) {
+  CutMoving<TestType> tissue(steak<TestType>(), on_its_side(), flesh);
+  const std::vector<Triangle> triangles = tissue.contact_surface().triangles();
+  const std::vector<Vector3> positions = tissue.contact_surface().positions();
+  const auto farthest = [&] {
+    const VectorX u = tissue.displacement();
+    double most = 0.0;
+    for (std::size_t v = 0; v < tissue.touchable_nodes().size(); ++v) {
+      const NodeId node = tissue.touchable_nodes()[v];
+      const Vector3 expected = tissue.rest_position(node) - tissue.origin() + node_vector(u, Index{node});
+      most = std::max(most, (tissue.contact_surface().position(static_cast<int>(v)) - expected).norm());
+    }
+    return most;
+  };
+  CHECK(farthest() <= 1e-12);
+  tissue.cut(CutOrder{elements_in(tissue, {0.07, 0.0, 0.0}, {0.08, 0.04, 0.04}), {}});
+  tissue.advance();
+  (void)tissue.begin_tick();
+  CHECK(tissue.contact_surface().triangles().size() != triangles.size());
+  CHECK(farthest() <= 1e-12);
+  tissue.reset();
+  (void)tissue.begin_tick();
+  CHECK((tissue.contact_surface().triangles() == triangles));
+  CHECK((tissue.contact_surface().positions() == positions));
+}
+
+TEST_CASE("a session on moving tissue that can be cut gives bitwise the same run after reset",
+          "[cut][moving][haptic]") {
+  Smooth tissue(steak<Smoothed<Tet4>>(), on_its_side(), flesh, {},
+                {.inertia = GENERATE(false, true), .mass_damping = 5.0});
+  const SphereTool tool{.radius = 6e-3};
+  std::optional<HapticServo> servo(std::in_place, tissue, tool);
+  const auto forces_of_session = [&] {
+    std::vector<Vector3> forces;
+    for (int k = 0; k < 160; ++k) {
+      if (k % 16 == 0) tissue.advance();
+      ToolState state;
+      state.time = 1e-3 * k;
+      state.position = {0.03 + 5e-5 * k, 0.02, 0.04 + 6e-3 - 8e-5 * k};
+      servo->tick(state);
+      forces.push_back(servo->contact_force());
+    }
+    return forces;
+  };
+  const std::vector<Vector3> first = forces_of_session();
+  CHECK(first.back().norm() > 0.01);
+  SECTION("without a cut") {}
+  SECTION("after a cut far from the tool") {
+    tissue.cut(CutOrder{elements_in(tissue, {0.07, 0.0, 0.0}, {0.08, 0.04, 0.04}), {}});
+    tissue.advance();
+  }
+  SECTION("the tissue is reset before the servo") {
+    tissue.reset();
+  }
+  servo->reset();
+  tissue.reset();
+  CHECK((forces_of_session() == first));
+  tissue.reset();
+  servo.reset();
+  servo.emplace(tissue, tool);
+  CHECK((forces_of_session() == first));
+}
+
 TEST_CASE("burning and slitting under a tool: forces continue, and end as in a model of what is left",
           "[cut][moving][haptic][extreme][F3]") {
   using namespace one_session;

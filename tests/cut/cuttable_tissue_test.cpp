@@ -120,6 +120,23 @@ TEST_CASE("forces on vertices that do not exist are refused", "[cut]") {
   CHECK(tissue.displacement({}) == rest);
 }
 
+TEST_CASE("vertices of tissue that can be cut belong to the touchable nodes, before and after a cut", "[cut]") {
+  Tissue tissue(slab(), constrained_below(), soft);
+  for (int cuts = 0; cuts < 2; ++cuts) {
+    const VectorX u = tissue.displacement();
+    double farthest = 0.0;
+    for (std::size_t v = 0; v < tissue.touchable_nodes().size(); ++v) {
+      const NodeId node = tissue.touchable_nodes()[v];
+      const Vector3 expected = tissue.rest_position(node) - tissue.origin() + node_vector(u, Index{node});
+      farthest = std::max(farthest, (tissue.contact_surface().position(static_cast<int>(v)) - expected).norm());
+    }
+    CHECK(farthest <= 1e-12);
+    tissue.cut(slit_at(0.05, 0.02));
+    tissue.process_cuts();
+    (void)tissue.begin_tick();
+  }
+}
+
 TEST_CASE("overstretched remains of a cut are left out of contact and reported, without failure", "[cut]") {
   // A hanging column whose middle is cut down to a few elements, far too soft for the weight they carry.
   const auto mesh = box_tet4({0.02, 0.02, 0.3}, {2, 2, 30}, BoxSplit::six);

@@ -239,6 +239,21 @@ TEST_CASE("a stopped motion continues after set(), with the limit of the new sta
   CHECK(limit <= 1.05 * motion.estimate_limit(200));
 }
 
+TEST_CASE("a motion after set() repeats bitwise, whatever was before", "[integrator]") {
+  const auto body = test::soft_block(3);
+  const auto& mesh = body.rest.mesh;
+  auto motion = motion_of<SemiImplicitEuler>(body, above_ground(mesh));
+  const VectorX still = VectorX::Zero(3 * mesh.node_count());
+  const auto swing = [&] {
+    motion.set(still, velocity_field(mesh, swirl));
+    for (int k = 0; k < 200; ++k) motion.step(motion.limit());
+    return VectorX(motion.state().displacement);
+  };
+  const VectorX first = swing();
+  motion.set(pressed(mesh, 0.5), still);
+  CHECK(swing() == first);
+}
+
 TEST_CASE("the energy check of a linear body detects the first steps that are too long", "[integrator][extreme][E6]") {
   const auto body = make_body(box_tet4(Vector3(0.1, 0.1, 0.1), {3, 3, 3}), LinearElastic{3e3, 0.45, 1000.0});
   const Mesh<Tet4>& mesh = body.mesh;

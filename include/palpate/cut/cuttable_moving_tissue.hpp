@@ -78,6 +78,7 @@ class CuttableMovingTissue : public MovingTissue {
     edges_.clear();
     similar_.resize(known_);
     cut_motion_->restart(body_->topology);
+    rest_at_start();  // as at the set-up, for the contact points of the surface
     change_surface();
     failed_.store(false, std::memory_order_release);
     halted_ = false;
@@ -118,7 +119,7 @@ class CuttableMovingTissue : public MovingTissue {
     MovingTissue::prepare_tools(radii, contact);
     const std::scoped_lock lock(changes());
     tools_ = {radii, contact};
-    if (report_.changes > 0) {
+    if (report_.cuts > 0 || left_out_) {  // otherwise it is that of the body without cuts
       change_surface();
       publish({});
     }
@@ -233,9 +234,10 @@ class CuttableMovingTissue : public MovingTissue {
     for (const NodeId node : made.nodes) positions.push_back(position(node));
     std::vector<Triangle> triangles = surface.triangles();
     std::vector<Index> elements = surface.elements();
-    if (tools_.radii.smallest > 0.0 &&
-        erase_stretched(positions, ContactSamples::maximum_subdivision * tools_.radii.smallest, triangles, elements))
-      made.status.set(StatusFlag::degraded_model);
+    left_out_ =
+        tools_.radii.smallest > 0.0 &&
+        erase_stretched(positions, ContactSamples::maximum_subdivision * tools_.radii.smallest, triangles, elements);
+    if (left_out_) made.status.set(StatusFlag::degraded_model);
     std::vector<NodeId> origin;
     for (const NodeId node : made.nodes) origin.push_back(body_->topology.origin_of(node));
     made.side = slit_sides(surface.triangles(), origin);
@@ -283,6 +285,7 @@ class CuttableMovingTissue : public MovingTissue {
   RestingEdges edges_;
   CutReport report_;
   std::atomic<bool> failed_{false};
+  bool left_out_ = false;   // triangles of the surface, too large for the tools
   bool halted_ = false;     // the surface does not fit to the motion: no steps until a reset
   std::uint64_t seen_ = 0;  // number of the surface that the session uses
 };

@@ -53,7 +53,10 @@ class HapticServo {
   const GatedForce& tick(const ToolState& state) noexcept { return tick({&state, 1}).front(); }
 
   /// Back to the state after construction, except the heat of the motors: the same states give bitwise equal results
-  /// again, if the tissue has been reset too. Reports to the tissue and the reader of snapshots that nothing presses.
+  /// again, if the tissue has been reset too. Not bitwise where background threads deliver at other times (asynchronous
+  /// columns, renewed factors, those after a cut of moving tissue, a BackgroundWorker), and where columns were replaced
+  /// (fewer SetupOptions::compliance_slots than touched vertices): that changes forces by rounding, with an iterative
+  /// solver by its tolerance. Reports to the tissue and the reader of snapshots that nothing presses.
   /// For the tick's own thread.
   void reset() noexcept;
   /// Reports to the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the

@@ -114,14 +114,16 @@ class ExplicitMotion {
     steps_ = at.steps;
   }
 
-  /// Sets displacement and velocity (at the same time), and restarts. Throws bad_argument, without a change, for
-  /// vectors that do not have one entry per dof.
+  /// Sets displacement and velocity (at the same time), and restarts, with an estimate of the limit that does not
+  /// depend on states before. Throws bad_argument, without a change, for vectors that do not have one entry per dof.
   void set(const VectorX& displacement, const VectorX& velocity) {
     for (const VectorX* v : {&displacement, &velocity}) require_entries(*v, force_.size());
     state_.displacement = displacement;
     state_.velocity = velocity;
     state_.target = displacement;
+    if (options_.limit_every > 0) limit_.restart();
     restart();
+    if (options_.limit_every > 0) estimate_limit(StepLimit::settled);  // more, since it began with a random vector
   }
   /// Resets the work, estimates the limit again (some 20 to 40 forces, none if limit_every is 0), and lets a stopped
   /// motion continue.

@@ -10,32 +10,29 @@
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
-#include <palpate/mesh/selection.hpp>
 #include <palpate/mesh/surface.hpp>
+#include <palpate/model/detail/touchable.hpp>
 
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Faces that a tool may touch, by element, and the vertices of their nodes. Vertices keep their numbers: new ones are
-/// appended, and those of removed parts stay at their position, without a triangle. Faces exposed by a cut are
-/// touchable from then on.
+/// Faces that a tool may touch and the vertices of their nodes. Before any cut both are those of resolve_touchable, in
+/// the same order. Vertices keep their numbers: new ones are appended, and those of removed parts stay at their
+/// position, without a triangle. Faces exposed by a cut are touchable from then on.
 template <Element E>
 class CutSurface {
  public:
   CutSurface() = default;
-  /// Resolves the touchable faces of a scene. Throws as resolve_faces.
+  /// Resolves the touchable faces of a scene. Throws as resolve_touchable.
   CutSurface(const CutTopology<E>& topology, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
-    const Mesh<E>& mesh = topology.mesh();
-    for (const Selection& selection : scene.touched())
-      for (const BoundaryFace& f : resolve_faces(mesh, boundary, selection))
-        for (std::size_t local = 0; local < E::faces.size(); ++local)
-          if (std::ranges::equal(topology.face_nodes({f.element, static_cast<int>(local)}), f.nodes))
-            faces_.push_back({f.element, static_cast<int>(local)});
-    std::ranges::sort(faces_, less);
-    faces_.erase(std::unique(faces_.begin(), faces_.end(), same), faces_.end());
+    const Touchable touchable = resolve_touchable(mesh_ref(topology.mesh()), boundary, scene);
+    for (const NodeId node : touchable.nodes) add(topology, node);
+    for (const BoundaryFace& f : touchable.faces)
+      for (std::size_t local = 0; local < E::faces.size(); ++local)
+        if (std::ranges::equal(topology.face_nodes({f.element, static_cast<int>(local)}), f.nodes))
+          faces_.push_back({f.element, static_cast<int>(local)});
     update(topology, {});
   }
 
@@ -71,12 +68,6 @@ class CutSurface {
   const std::vector<ElementFace>& faces() const noexcept { return faces_; }
 
  private:
-  static bool less(const ElementFace& a, const ElementFace& b) noexcept {
-    return std::tie(a.element, a.face) < std::tie(b.element, b.face);
-  }
-  static bool same(const ElementFace& a, const ElementFace& b) noexcept {
-    return a.element == b.element && a.face == b.face;
-  }
   int add(const CutTopology<E>& topology, NodeId node) {
     vertex_of_.resize(topology.mesh().positions.size(), -1);
     int& vertex = vertex_of_[static_cast<std::size_t>(node)];

@@ -20,7 +20,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Touchable {
   std::vector<NodeId> nodes;
   std::vector<Triangle> triangles;
-  std::vector<Index> elements;  ///< behind the triangles
+  std::vector<Index> elements;      ///< behind the triangles
+  std::vector<BoundaryFace> faces;  ///< whose triangles they are, in this order
 
   /// The rest of the boundary; an index k >= nodes.size() means shell_nodes[k - nodes.size()].
   std::vector<NodeId> shell_nodes;

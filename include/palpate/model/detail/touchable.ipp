@@ -74,6 +74,7 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
                               static_cast<std::size_t>(mesh.element.face_of(face.nodes.size()).triangle_count),
                               face.element);
   add(rest, touchable.shell);
+  touchable.faces = touched;
   return touchable;
 }
 

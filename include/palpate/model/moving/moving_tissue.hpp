@@ -127,7 +127,8 @@ class MovingTissue : public ModelBase {
   double compliance_floor() const noexcept { return views_.front().compliance.floor(); }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
-  /// Updates the description of loads that error messages contain; not while a session ticks.
+  /// Takes the newest surface, and updates the description of loads that error messages contain; not while a session
+  /// ticks.
   void prepare_tools(const ToolRadii&, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   /// One servo at a time: its forces load the next step.
@@ -162,6 +163,8 @@ class MovingTissue : public ModelBase {
   /// of all its nodes. Loads become those of the scene on this body. From `prepare_step`. Allocates.
   void change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
                       const std::vector<Vector3>& positions);
+  /// Rests at the start under the loads of the set-up; for its body.
+  void rest_at_start();
   /// Loads the scene's conditions and rests at the start, for the body of the set-up.
   void restart();
   std::mutex& changes() noexcept { return changes_; }

@@ -220,21 +220,29 @@ PALPATE_INLINE void MovingTissue::reset() {
   restart();
 }
 
-PALPATE_INLINE void MovingTissue::restart() {
-  Scene loaded = scene();
-  VectorX applied = load_of(loaded, Vector3::Zero());
-  std::string others = loaded.loads_in_words();
-  loaded_ = std::move(loaded);
-  applied_.swap(applied);
+PALPATE_INLINE void MovingTissue::rest_at_start() {
   load_ = start_load_;
   motion_->set_load(load_);
   motion_->set_prescribed(start_prescribed_);
   motion_->rest_at(start_);
+}
+
+PALPATE_INLINE void MovingTissue::restart() {
+  Scene loaded = scene();
+  VectorX mass = elastic_body().nodal_mass();
+  VectorX applied = load_of(loaded, Vector3::Zero());
+  std::string others = loaded.loads_in_words();
+  loaded_ = std::move(loaded);
+  applied_.swap(applied);
+  mass_.swap(mass);  // that of a body that is cut may differ by rounding
+  rest_at_start();
   place(Eigen::Isometry3d::Identity());
   keep_loads(scene().gravity(), others);
   pressing_.update();
   pressing_.front() = {};  // of a session before the reset
   used_ = {};
+  ticked_ = {};
+  near_.count = pressed_.count = 0;  // of ticks before the reset
   secants_.clear();
   find_moved(moved_);
   loads_changed_ = was_slit_ = false;
@@ -291,6 +299,7 @@ PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> f
 
 PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters&) {
   const std::scoped_lock lock(changes_);
+  take_surface();  // contact points are placed on it
   views_.front().surface.set_loads(loads_in_words(gravity(), other_loads()));
 }
 

@@ -69,7 +69,7 @@ class ContactCompliance {
     else
       return stored.template cast<double>();
   }
-  /// Changes when a missing column has become available.
+  /// Changes when a column has become available whose substitute may have been read.
   std::uint64_t revision() const noexcept { return revision_; }
   /// Upper bound of |displacement| of any vertex per unit force on vertex j [m/N].
   double bound(int j) const noexcept {
@@ -86,6 +86,8 @@ class ContactCompliance {
 
   /// Computes or requests a missing column, in the least recently used slot.
   Status obtain(int v) noexcept;
+  /// Removes the column in a slot, which is for vertex v from now on.
+  void replace(int slot, int v) noexcept;
 
   static constexpr std::array<Scalar, 9> none{};
   static constexpr std::uint64_t in_work = std::numeric_limits<std::uint64_t>::max();
@@ -94,6 +96,7 @@ class ContactCompliance {
   std::unique_ptr<ComplianceColumns<Scalar>> columns_;  // at a fixed address, for the thread
   std::vector<int> slot_of_, vertex_of_;
   std::vector<bool> ordered_;             // per vertex: requested from the thread
+  std::vector<bool> substituted_;         // per vertex: may have been read while its column was missing
   std::vector<std::uint64_t> last_used_;  // per slot
   std::uint64_t clock_ = 0, revision_ = 0;
   VectorX column_;

@@ -25,6 +25,7 @@ ContactCompliance<Scalar>::ContactCompliance(AnyStaticSystem system, std::vector
     : system_(std::move(system)),
       slot_of_(kept_index.size() / 3, -1),
       ordered_(slot_of_.size(), false),
+      substituted_(slot_of_.size(), false),
       column_(system_.kept()) {
   slots = std::min(slots, static_cast<int>(slot_of_.size()));
   columns_ = std::make_unique<ComplianceColumns<Scalar>>(std::move(kept_index), slots, limits);
@@ -86,21 +87,33 @@ Status ContactCompliance<Scalar>::obtain(int v) noexcept {
   if (worker_) status.set(StatusFlag::degraded_model);
   if (ordered_[static_cast<std::size_t>(v)]) return status;
   const auto oldest = std::ranges::min_element(last_used_);
-  if (oldest == last_used_.end() || *oldest == clock_ || *oldest == in_work) return StatusFlag::degraded_model;
+  if (oldest == last_used_.end() || *oldest == clock_ || *oldest == in_work) {
+    substituted_[static_cast<std::size_t>(v)] = true;
+    return StatusFlag::degraded_model;
+  }
   const auto s = static_cast<int>(oldest - last_used_.begin());
-  int& vertex = vertex_of_[static_cast<std::size_t>(s)];
   if (worker_ && !worker_->order(v, s)) return status;
-  if (vertex >= 0) slot_of_[static_cast<std::size_t>(vertex)] = -1;
-  vertex = v;
+  replace(s, v);
   *oldest = worker_ ? in_work : clock_;
   if (worker_) {
     ordered_[static_cast<std::size_t>(v)] = true;
     return status;
   }
   slot_of_[static_cast<std::size_t>(v)] = s;
-  ++revision_;
+  if (substituted_[static_cast<std::size_t>(v)]) ++revision_;
+  substituted_[static_cast<std::size_t>(v)] = false;
   if (!columns_->fill(system_, v, s, column_)) status.set(StatusFlag::solver_not_converged);
   return status;
+}
+
+template <std::floating_point Scalar>
+void ContactCompliance<Scalar>::replace(int slot, int v) noexcept {
+  int& vertex = vertex_of_[static_cast<std::size_t>(slot)];
+  if (vertex >= 0) {
+    slot_of_[static_cast<std::size_t>(vertex)] = -1;
+    substituted_[static_cast<std::size_t>(vertex)] = true;  // forces on it may remain
+  }
+  vertex = v;
 }
 
 #if !PALPATE_HEADER_ONLY
