@@ -23,6 +23,9 @@ Matrix3 reflection() {
   return Vector3(1.0, -1.0, 1.0).asDiagonal();
 }
 
+bool is_static(const Scene& s) {
+  return !moves(s.solver) && !can_be_cut(s.solver);
+}
 /// Whether a run repeats to the last bit: not where a thread renews the factor of tissue that is cut.
 bool repeats_exactly(const Scene& s) {
   return !can_be_cut(s.solver) || (s.cuts == 0 && std::none_of(s.tools.begin(), s.tools.end(),
@@ -33,6 +36,14 @@ double exactly(const Scene& s) {
 }
 double almost_exactly(const Scene& s) {
   return repeats_exactly(s) ? 1e-9 : 0.02;
+}
+
+/// The same for a second play on the same tissue. A solver that keeps some columns of the compliance may have replaced
+/// some: that changes forces by rounding, or by the tolerance of an iterative solver.
+double replayed(const Scene& s) {
+  const bool keeps_columns = is_static(s) && s.solver != "condensed" && s.solver != "condensed_float" &&
+                             s.solver != "inverse" && s.solver != "stiffening";
+  return keeps_columns ? 1e-5 : exactly(s);
 }
 
 /// Relative difference up to which two runs whose rounding differs are equal. Friction and motion remember: where a
@@ -56,18 +67,15 @@ bool always(const Scene&) {
 bool is_alone(const Scene& s) {
   return s.member == "alone";
 }
-bool is_static(const Scene& s) {
-  return !moves(s.solver) && !can_be_cut(s.solver);
-}
 
 std::vector<Finding> check_repeated(const Scene& s, const Run& r) {
   return compare_with("repeated", s, r, {}, exactly(s));
 }
 std::vector<Finding> check_again(const Scene& s, const Run& r) {
-  return compare_with("played again", s, r, {.plays = 2}, almost_exactly(s));
+  return compare_with("played again", s, r, {.plays = 2}, replayed(s));
 }
 std::vector<Finding> check_new_servo(const Scene& s, const Run& r) {
-  return compare_with("new servo", s, r, {.plays = 2, .new_servo = true}, almost_exactly(s));
+  return compare_with("new servo", s, r, {.plays = 2, .new_servo = true}, replayed(s));
 }
 std::vector<Finding> check_moved(const Scene& s, const Run& r) {
   return compare_with("other pose", s, r, {.pose = s.pose == "identity" ? "rotated" : "identity"},
