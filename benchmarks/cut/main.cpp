@@ -8,6 +8,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/detail/touchable.hpp>
 
 #include <Eigen/SparseCholesky>
@@ -70,10 +71,10 @@ struct Block {
   }
 };
 
-std::vector<Vector3> positions_of(const CutTopology<Tet4>& t, const CutSurface<Tet4>& s,
+std::vector<Vector3> positions_of(const std::vector<NodeId>& nodes, const CutTopology<Tet4>& t,
                                   const CutSystem<Tet4>& system) {
   std::vector<Vector3> x;
-  for (const NodeId node : s.nodes())
+  for (const NodeId node : nodes)
     x.push_back(t.mesh().position(node) + system.displacement().segment<3>(3 * Index{node}));
   return x;
 }
@@ -108,8 +109,11 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
     const std::vector<double> bounds(b.surface.nodes().size(), 1.0);
     CutView view;
     const auto contact = [&] {
-      return std::make_shared<CutContact>(system, surface, positions_of(topology, surface, system), 4e-3,
-                                          ContactParameters{}, 1);
+      ContactSurface made(positions_of(surface.nodes(), topology, system), surface.triangles());
+      made.set_materials(detail::contact_materials(b.physics.body, surface.elements()));
+      const auto shell = surface.shell(topology);
+      made.add_shell(positions_of(shell.others, topology, system), shell.triangles);
+      return std::make_shared<CutContact>(system, surface, std::move(made), 4e-3, ContactParameters{}, 1);
     };
     TopologyChange<Tet4> change;
     rendered.push_back(bench::seconds_of([&] {

@@ -5,6 +5,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
+#include <palpate/mesh/where.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/tissue_laws.hpp>
@@ -49,6 +50,33 @@ ToolState at(const Vector3& x, double time) {
   s.time = time;
   s.valid = true;
   return s;
+}
+
+using Uncut = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
+
+/// Soft on the left of x = 0.05, a hundred times as stiff on the right; its top can be touched.
+Mesh<Tet4> two_halves() {
+  Mesh<Tet4> mesh = slab();
+  mesh.region_names = {"left", "right"};
+  for (Index e = 0; e < mesh.element_count(); ++e)
+    mesh.regions.push_back(element_nodes<Tet4>(mesh, e).col(0).mean() > 0.05 ? 1 : 0);
+  return mesh;
+}
+const RegionMaterials<LinearElastic> halves{{"left", {.youngs_modulus = 5e3, .poisson_ratio = 0.4}},
+                                            {"right", {.youngs_modulus = 5e5, .poisson_ratio = 0.3}}};
+const Scene top = Scene().fix("z0").touch("z1");
+/// Facets are 18 mm long.
+constexpr SphereTool tip{.radius = 1e-3};
+
+/// Forces and flags of a sphere that moves over the places in turn, in steps of 0.1 mm.
+std::vector<GatedForce> forces_along(HapticServo& servo, const std::vector<Vector3>& places, double& time) {
+  std::vector<GatedForce> forces;
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    const int ticks = std::max(1, static_cast<int>((places[k] - places[k - 1]).norm() / 1e-4));
+    for (int i = 1; i <= ticks; ++i)
+      forces.push_back(servo.tick(at(places[k - 1] + (places[k] - places[k - 1]) * i / ticks, time += 1e-3)));
+  }
+  return forces;
 }
 
 }  // namespace
@@ -441,6 +469,156 @@ TEST_CASE("a deep press of linear tissue that can be cut is flagged where that o
   }
   CHECK(flagged > 50);
   CHECK(not_flagged > 50);
+}
+
+TEST_CASE("before any cut a sphere much smaller than the facets feels what it feels on tissue that cannot be cut",
+          "[cut][coarse]") {
+  Tissue tissue(two_halves(), top, halves);
+  Uncut uncut(two_halves(), top, halves);
+  const double x = GENERATE(0.022, 0.048, 0.077);  // left, over the boundary of the regions, right
+  HapticServo servo(tissue, tip), other(uncut, tip);
+  const std::vector<Vector3> path{
+      {x, 0.047, 0.0521}, {x, 0.047, 0.0507}, {x + 2e-3, 0.048, 0.0507}, {x + 2e-3, 0.048, 0.054}};
+  double time = 0.0, same_time = 0.0, largest = 0.0;
+  const auto forces = forces_along(servo, path, time), expected = forces_along(other, path, same_time);
+  for (const GatedForce& f : expected) largest = std::max(largest, f.force().norm());
+  REQUIRE(largest > 1e-4);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    CAPTURE(k, forces[k].force().norm(), expected[k].force().norm());
+    REQUIRE((forces[k].force() - expected[k].force()).norm() <= 1e-6 * largest);
+    REQUIRE(forces[k].status == expected[k].status);
+    // The probe errors of the two factors differ, by less than their bound.
+    const ForceErrorParts &own = forces[k].error.parts, &same = expected[k].error.parts;
+    REQUIRE((own.conditioning > 0.0) == (same.conditioning > 0.0));
+    REQUIRE(std::abs(own.linearity - same.linearity) <= 1e-6 * (largest + same.linearity));
+  }
+}
+
+TEST_CASE("a small sphere keeps its dent when the tissue is cut far from it", "[cut][coarse]") {
+  Tissue tissue(two_halves(), top, halves);
+  HapticServo servo(tissue, tip);
+  const Vector3 start(0.022, 0.047, 0.0521), pressed(0.022, 0.047, 0.0507);
+  double time = 0.0;
+  forces_along(servo, {start, pressed}, time);
+  for (int i = 0; i < 100; ++i) servo.tick(at(pressed, time += 1e-3));
+  const Vector3 before = servo.contact_force();
+  REQUIRE(before.norm() > 1e-4);
+  tissue.cut(slit_at(0.0876, 0.03));
+  while (tissue.process_cuts()) {}
+  REQUIRE(tissue.cut_report().cuts == 1);
+  for (int i = 0; i < 100; ++i) {
+    const ToolState s = at(pressed, time += 1e-3);
+    const testing::AllocationScope scope;
+    servo.tick({&s, 1});
+    const auto calls = scope.allocations() + scope.frees();
+    CHECK(calls == 0);
+    REQUIRE((servo.contact_force() - before).norm() < 0.02 * before.norm());
+  }
+  // A new session on the cut tissue has the same dent.
+  HapticServo& again = servo;
+  again.reset();
+  forces_along(again, {start, pressed}, time);
+  for (int i = 0; i < 100; ++i) again.tick(at(pressed, time += 1e-3));
+  CHECK((again.contact_force() - before).norm() < 0.02 * before.norm());
+}
+
+TEST_CASE("after every cut the surface knows the material behind each of its triangles", "[cut][coarse]") {
+  Mesh<Tet4> mesh = two_halves();
+  for (Vector3& x : mesh.positions) x[1] += 2.0 * std::max(0.0, x[1] - 0.05);
+  Tissue tissue(mesh, Scene().fix("z0").touch("surface"), halves);
+  const auto check = [&] {
+    tissue.begin_tick();
+    const ContactSurface& surface = tissue.contact_surface();
+    int soft_ones = 0, stiff_ones = 0;
+    for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
+      Vector3 inside = tissue.origin() - 1e-4 * surface.normal(t);
+      for (const int v : surface.triangle(t)) inside += surface.position(v) / 3.0;
+      const LinearElastic& material = halves[inside[0] > 0.05 ? 1 : 0].second;
+      const double modulus = material.youngs_modulus / (1.0 - material.poisson_ratio * material.poisson_ratio);
+      REQUIRE(std::abs(surface.material(t).modulus - modulus) < 1e-9 * modulus);
+      REQUIRE(std::abs(surface.material(t).poisson_ratio - material.poisson_ratio) < 1e-9);
+      ++(inside[0] > 0.05 ? stiff_ones : soft_ones);
+    }
+    CHECK(soft_ones > 20);
+    CHECK(stiff_ones > 20);
+  };
+  check();
+  for (const double x : {0.036, 0.0623}) {
+    tissue.cut(slit_at(x, 0.02));
+    while (tissue.process_cuts()) {}
+    check();
+  }
+  tissue.cut(CutOrder{.remove = {1500, 1501, 1502, 700}, .open = {}});
+  while (tissue.process_cuts()) {}
+  check();
+  const std::size_t all = tissue.contact_surface().triangles().size();
+  tissue.prepare_tools(1e-3, {});  // too small for the long facets, which are left out
+  CHECK(tissue.contact_surface().triangles().size() < all - 20);
+  check();
+  tissue.reset();
+  check();
+}
+
+TEST_CASE("inside and outside of tissue that is cut are those of the body, where only a patch can be touched",
+          "[cut][surface]") {
+  Tissue tissue(slab(), top, soft);
+  const auto distance = [&](double x, double y, double z) {
+    return tissue.contact_surface().distance_of_body(tissue.to_world().inverse() * Vector3(x, y, z));
+  };
+  REQUIRE(tissue.contact_surface().has_shell());
+  CHECK(distance(0.052, 0.047, 0.049) < 0.0);
+  CHECK(distance(0.001, 0.047, 0.02) < 0.0);
+  CHECK(distance(-0.001, 0.047, 0.02) > 0.0);
+  CHECK(distance(0.052, 0.047, -0.01) > 0.0);
+  Uncut uncut(slab(), top, soft);
+  HapticServo servo(tissue, SphereTool{.radius = 4e-3}), other(uncut, SphereTool{.radius = 4e-3});
+  const std::vector<Vector3> path{{0.05, 0.047, 0.06},  {0.051, 0.047, 0.051}, {-0.001, 0.047, 0.052},
+                                  {-0.01, 0.047, 0.04}, {0.11, 0.047, 0.02},   {0.05, 0.05, -0.01}};
+  double time = 0.0, same_time = 0.0, largest = 0.0;
+  const auto forces = forces_along(servo, path, time), expected = forces_along(other, path, same_time);
+  for (const GatedForce& f : expected) largest = std::max(largest, f.force().norm());
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    CAPTURE(k, forces[k].force().norm(), expected[k].force().norm());
+    REQUIRE((forces[k].force() - expected[k].force()).norm() <= 1e-6 * largest);
+    REQUIRE(forces[k].status == expected[k].status);
+  }
+  // A corner that is burnt away is outside, and what it exposes can be touched.
+  CutOrder order;
+  for (Index e = 0; e < tissue.mesh().element_count(); ++e) {
+    const Vector3 x = tissue.origin() + element_nodes<Tet4>(tissue.mesh(), e).colwise().mean().transpose();
+    if (x[0] < 0.025 && x[1] < 0.025) order.remove.push_back(e);
+  }
+  tissue.cut(order);
+  while (tissue.process_cuts()) {}
+  tissue.begin_tick();
+  CHECK(tissue.contact_surface().is_closed());
+  CHECK(distance(0.01, 0.01, 0.02) > 0.0);
+  CHECK(distance(0.03, 0.01, 0.02) < 0.0);
+  CHECK(distance(0.03, -0.001, 0.02) > 0.0);
+}
+
+TEST_CASE("parts that touch only at an edge can be touched there when they are cut apart", "[cut][surface]") {
+  // Two of the four columns of a block, which share the edge between them.
+  Mesh<Tet4> block = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}, BoxSplit::six), mesh;
+  std::vector<NodeId> number(block.positions.size(), -1);
+  for (Index e = 0; e < block.element_count(); ++e) {
+    const Vector3 x = element_nodes<Tet4>(block, e).colwise().mean().transpose();
+    if ((x[0] > 0.02) != (x[1] > 0.02)) continue;
+    auto nodes = block.elements[static_cast<std::size_t>(e)];
+    for (NodeId& node : nodes) {
+      NodeId& own = number[static_cast<std::size_t>(node)];
+      if (own < 0) {
+        own = static_cast<NodeId>(mesh.positions.size());
+        mesh.positions.push_back(block.position(node));
+      }
+      node = own;
+    }
+    mesh.elements.push_back(nodes);
+  }
+  const Scene scene = Scene().fix(where::below(Vector3(0.0, 0.0, 1e-6))).touch("surface");
+  Tissue tissue(mesh, scene, soft);
+  CHECK(tissue.contact_surface().triangles().size() == Uncut(mesh, scene, soft).contact_surface().triangles().size());
+  CHECK(tissue.contact_surface().is_closed());
 }
 
 TEST_CASE("tissue that is cut is refused to a second servo", "[cut][refused]") {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact.hpp>
+#include <palpate/contact/detail/contact_samples.hpp>
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/detail/box.hpp>
 #include <palpate/cut/cut_parameters.hpp>
@@ -13,11 +14,13 @@
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/resting_nodes.hpp>
 #include <palpate/model/admission_report.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/detail/touchable.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -77,7 +80,8 @@ class CutState {
         limits_(limits),
         publish_to_(std::move(publish)),
         system_(topology_, *physics_, kept_nodes(), limits_, &report),
-        diagonal_(box_of(topology_.mesh().positions).size().norm()) {
+        diagonal_(box_of(topology_.mesh().positions).size().norm()),
+        lost_(std::max(report.probe_error, 0.5 * std::numeric_limits<double>::epsilon() * report.condition_estimate)) {
     limits_.threads = 1;  // beside a haptic loop from here on
     limits_.progress = {};
     find_supports();
@@ -150,21 +154,39 @@ class CutState {
     }
     size_ = box_of(topology_.mesh().positions).size().maxCoeff();
   }
-  /// What ticks need to know how far linear elasticity is off.
-  LinearModelError model_error() const {
+  /// The error of the compliance is that of the factor, or the last one that was measured after a cut.
+  LinearModelError model_error(const std::vector<double>& bounds) const {
     LinearModelError error;
+    const double lost = std::max(lost_, report_.error);
+    for (const double bound : bounds) error.conditioning = std::max(error.conditioning, lost * bound);
     error.body_size = size_;
     for (const NodeId node : touchable_.nodes())
       error.supports.push_back(support_[static_cast<std::size_t>(topology_.origin_of(node))]);
     return error;
   }
-  void make_contact() {
+  std::vector<Vector3> positions_of(const std::vector<NodeId>& nodes) const {
     std::vector<Vector3> positions;
-    for (const NodeId node : touchable_.nodes()) positions.push_back(position(node));
+    for (const NodeId node : nodes) positions.push_back(position(node));
+    return positions;
+  }
+  /// With the materials behind its triangles, and the boundary that cannot be touched. Nodes there that are not kept
+  /// have the displacement before the last cut.
+  ContactSurface make_surface(std::vector<Vector3> positions, double smallest_radius) const {
+    std::vector<Triangle> triangles = touchable_.triangles();
+    std::vector<Index> elements = touchable_.elements();
+    erase_stretched(positions, ContactSamples::maximum_subdivision * smallest_radius, triangles, elements);
+    ContactSurface surface(std::move(positions), std::move(triangles));
+    surface.set_materials(detail::contact_materials(physics_->body, elements));
+    const auto shell = touchable_.shell(topology_);
+    surface.add_shell(positions_of(shell.others), shell.triangles);
+    return surface;
+  }
+  void make_contact() {
+    std::vector<Vector3> positions = positions_of(touchable_.nodes());
     const ToolRadii radii = tools_.radii.smallest > 0.0 ? tools_.radii : ToolRadii(longest_edge(positions));
     report_.displacement = displacement_spread(displacements_to(positions)) / diagonal_;
-    contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(positions), radii, tools_.contact, cut_);
-    contact_->surface.set_model_error(model_error());
+    ContactSurface surface = make_surface(std::move(positions), radii.smallest);
+    contact_ = std::make_shared<CutContact>(system_, touchable_, std::move(surface), radii, tools_.contact, cut_);
     contact_->too_far = !(report_.displacement <= largest_linear_displacement);
   }
   void publish_exactly() {
@@ -172,8 +194,12 @@ class CutState {
     made.bound_exactly();
     publish(std::move(made));
   }
+  /// The surface of a new contact gets its errors before a tick reads it.
   void publish(CutView&& made) {
+    CutContact& contact = *made.contact;
+    if (!contact.published) contact.surface.set_model_error(model_error(made.bound));
     bound_ = made.bound;
+    contact.published = true;
     publish_to_(std::move(made));
   }
 
@@ -187,6 +213,7 @@ class CutState {
   CutSystem<E> system_;
   RestingNodes resting_;
   double diagonal_, size_ = 0.0;  // of the bounding box, and its longest edge [m]
+  double lost_;                   // relative error of the compliance at set-up
   std::vector<double> support_;   // per node before any cut, distance to a constrained one [m]; infinity: not touched
   CutReport report_;
   std::shared_ptr<CutContact> contact_;  // of the last cut

@@ -29,18 +29,20 @@ bool erase_stretched(const std::vector<Vector3>& positions, double longest, std:
 /// is folded in. Made by the thread that cuts, used by the one that ticks. Triangles on weak remains that are stretched
 /// beyond what contact points can cover are left out; ticks then report degraded_model.
 struct CutContact {
-  bool left_out = false;  ///< true if a triangle is left out
-  bool too_far = false;   ///< true if the loads displace a vertex too far for linear elasticity
+  bool left_out = false;   ///< true if a triangle is left out
+  bool too_far = false;    ///< true if the loads displace a vertex too far for linear elasticity
+  bool published = false;  ///< true when ticks may read it; for the thread that cuts
   ContactSurface surface;
   std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: constrained or removed
   ContactProblem problem;
   std::uint64_t cut = 0;  ///< number of the cut
 
+  /// `made` has the vertices of `touchable`, and those of its triangles that are not stretched.
   template <Element E>
-  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, std::vector<Vector3> positions,
-             const ToolRadii& radii, const ContactParameters& contact, std::uint64_t number)
-      : surface(
-            covered(std::move(positions), touchable.triangles(), ContactSamples::maximum_subdivision * radii.smallest)),
+  CutContact(const CutSystem<E>& system, const CutSurface<E>& touchable, ContactSurface made, const ToolRadii& radii,
+             const ContactParameters& contact, std::uint64_t number)
+      : left_out(made.triangles().size() < touchable.triangles().size()),
+        surface(std::move(made)),
         place(touchable.nodes().size(), {-1, -1, -1}),
         problem(surface, radii, contact),
         cut(number) {
@@ -48,9 +50,6 @@ struct CutContact {
       for (int c = 0; c < 3; ++c)
         if (touchable.is_used(v)) place[v][static_cast<std::size_t>(c)] = system.place(touchable.nodes()[v], c);
   }
-
- private:
-  ContactSurface covered(std::vector<Vector3> positions, std::vector<Triangle> triangles, double longest);
 };
 
 /// The data that a tick reads between two changes. Views of one cut have the same contact and, up to rounding, the same

@@ -26,13 +26,6 @@ PALPATE_INLINE bool erase_stretched(const std::vector<Vector3>& positions, doubl
   return erased;
 }
 
-PALPATE_INLINE ContactSurface CutContact::covered(std::vector<Vector3> positions, std::vector<Triangle> triangles,
-                                                  double longest) {
-  std::vector<Index> elements;
-  left_out = erase_stretched(positions, longest, triangles, elements);
-  return ContactSurface(std::move(positions), std::move(triangles));
-}
-
 PALPATE_INLINE Matrix3 CutView::compliance(int i, int j) const noexcept {
   const auto &a = place(i), &b = place(j);
   Matrix3 block;

@@ -55,6 +55,20 @@ const ElementBody<E>& element_body(const ElasticBody& body) noexcept {
   return static_cast<const ElementBody<E>&>(body);
 }
 
+/// The isotropic materials of elements, for the contact surface before them; unknown where they are not isotropic.
+template <Element E>
+std::vector<ContactMaterial> contact_materials(const Body<E>& body, std::span<const Index> elements) {
+  std::vector<ContactMaterial> materials;
+  for (const Index e : elements) {
+    ContactMaterial& material = materials.emplace_back();
+    if (const auto lame = lame_constants(body.elasticity_of(e))) {
+      const double sum = lame->lambda + lame->mu;
+      material = {4.0 * lame->mu * sum / (sum + lame->mu), 0.5 * lame->lambda / sum};
+    }
+  }
+  return materials;
+}
+
 }  // namespace detail
 
 template <Element E>
@@ -115,15 +129,7 @@ double ElementBody<E>::strain_energy(const VectorX& u) const {
 }
 template <Element E>
 std::vector<ContactMaterial> ElementBody<E>::contact_materials(std::span<const Index> elements) const {
-  std::vector<ContactMaterial> materials;
-  for (const Index e : elements) {
-    ContactMaterial& material = materials.emplace_back();
-    if (const auto lame = lame_constants(body_.elasticity_of(e))) {
-      const double sum = lame->lambda + lame->mu;
-      material = {4.0 * lame->mu * sum / (sum + lame->mu), 0.5 * lame->lambda / sum};
-    }
-  }
-  return materials;
+  return detail::contact_materials(body_, elements);
 }
 template <Element E>
 CacheKey ElementBody<E>::key() const noexcept {
