@@ -33,3 +33,17 @@ TEST_CASE("no segment passes between the two triangles of a sweep, or between co
   }
   CHECK(missed == 0);
 }
+
+TEST_CASE("whether a segment with an end on the sheet crosses it does not depend on its pose", "[contact][cut]") {
+  testing::Random random(11);
+  const BladeSweep sweep{{-0.03, 0.0, 0.0}, {0.03, 0.0, 0.0}, {-0.03, 0.0, 0.02}, {0.03, 0.0, 0.02}};
+  for (int k = 0; k < 2000; ++k) {
+    const Vector3 on(random.uniform(-0.029, 0.029), 0.0, random.uniform(0.001, 0.019));
+    const Vector3 off = on + Vector3(0.0, k % 2 == 0 ? 3e-3 : -3e-3, 0.0);
+    const Matrix3 rotation = testing::random_rotation(random);
+    const Vector3 shift = random.vector<3>(-1.0, 1.0);
+    const auto moved = [&](const Vector3& x) { return Vector3(rotation * x + shift); };
+    const BladeSweep other{moved(sweep.a0), moved(sweep.b0), moved(sweep.a1), moved(sweep.b1)};
+    CHECK(other.crosses(moved(on), moved(off)) == sweep.crosses(on, off));
+  }
+}

@@ -36,6 +36,8 @@ bool is_met(const Scene& s, const Known::Condition& c) {
   for (const ToolValue& t : s.tools) smallest = std::min(smallest, t.radius);
   look("facets", s.edge / smallest);
   look("tools", static_cast<double>(s.tools.size()));
+  look("moves", moves(s.solver) ? 1.0 : 0.0);
+  look("is_cut", is_cut(s) ? 1.0 : 0.0);
   if (!found) throw std::runtime_error("there is no value \"" + c.name + "\"");
   return met;
 }
@@ -49,7 +51,7 @@ Known read_one(const std::filesystem::path& path) {
   Known known;
   known.file = path.filename().string();
   for (std::string line; std::getline(in, line);) {
-    if (const std::string text = after(line, "# oracle: "); !text.empty()) known.oracle = text;
+    if (const std::string text = after(line, "# oracle: "); !text.empty()) known.oracles.push_back(text);
     if (const std::string text = after(line, "# cause: "); !text.empty()) known.cause = text;
     const std::string text = after(line, "# where: ");
     Known::Condition c;
@@ -58,14 +60,14 @@ Known read_one(const std::filesystem::path& path) {
   in.clear();
   in.seekg(0);
   known.scene = from_text(in);
-  if (known.oracle.empty() || known.cause.empty()) throw std::runtime_error("no oracle or no cause");
+  if (known.oracles.empty() || known.cause.empty()) throw std::runtime_error("no oracle or no cause");
   return known;
 }
 
 }  // namespace
 
 bool Known::matches(const Scene& s, const Finding& f) const {
-  return f.oracle == oracle &&
+  return std::find(oracles.begin(), oracles.end(), f.oracle) != oracles.end() &&
          std::all_of(where.begin(), where.end(), [&](const Condition& c) { return is_met(s, c); });
 }
 

@@ -8,15 +8,18 @@
 
 namespace cross {
 
-/// A file of known/: a scene, and in comments "# oracle: <name>", "# cause: <sentence>" and any number of
-/// "# where: <name> <relation> <value>". A failure of that oracle whose scene meets all conditions has that cause.
-/// Names are those of a scene's values, of any tool's values, and "facets", the length of an edge in radii of the
-/// smallest tool. Relations: =, !=, <, >.
+/// A file of known/: a scene, and in comments "# cause: <sentence>", "# oracle: <name>" of every oracle that sees it,
+/// first the one that the scene fails, and any number of "# where: <name> <relation> <value>". A failure of one of
+/// these oracles whose scene meets all conditions has that cause. Names are those of a scene's values, of any tool's
+/// values, and "facets", the length of an edge in radii of the smallest tool, "tools", their number, "moves" and
+/// "is_cut", 0 or
+/// 1. Relations: =, !=, <, >.
 struct Known {
   struct Condition {
     std::string name, relation, value;
   };
-  std::string file, oracle, cause;
+  std::string file, cause;
+  std::vector<std::string> oracles;
   std::vector<Condition> where;
   Scene scene;
 

@@ -269,7 +269,7 @@ int judge_file(const Arguments& a) {
 int check_known(const Arguments& a) {
   int mended = 0;
   for (const Known& k : read_known(a.known)) {
-    const Verdict v = judge_isolated(k.scene, [&](const Oracle& o) { return o.name == k.oracle; });
+    const Verdict v = judge_isolated(k.scene, [&](const Oracle& o) { return o.name == k.oracles.front(); });
     const bool fails = std::any_of(v.findings.begin(), v.findings.end(), [](const Finding& f) { return !f.flagged; });
     std::printf("%s: %s: %s\n", k.file.c_str(), fails ? "fails as known" : "MENDED: make it a test", k.cause.c_str());
     mended += !fails;

@@ -17,10 +17,6 @@ bool has_inertia(const Scene& s) {
 bool remembers(const Scene& s) {
   return s.law == "viscoelastic";
 }
-bool is_cut(const Scene& s) {
-  return s.cuts > 0 ||
-         std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
-}
 bool grasps(const Scene& s) {
   return std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.grasps; });
 }
@@ -163,14 +159,19 @@ const std::vector<Oracle>& laws_of_physics() {
   static const std::vector<Oracle> all{
       {"finite", 0, [](const Scene&) { return true; }, check_finite},
       {"action and reaction", 0, [](const Scene&) { return true; }, check_reaction},
-      {"no pull", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s); }, check_pull},
+      // A tool that sticks in its dent is also drawn back.
+      {"no pull", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s) && s.friction == 0.0; },
+       check_pull},
       {"grows with depth", 0,
-       [](const Scene& s) { return is_one_press(s) && !has_inertia(s) && !remembers(s) && s.tools[0].depth <= 1.0; },
+       [](const Scene& s) {
+         return is_one_press(s) && !has_inertia(s) && !remembers(s) && s.friction == 0.0 && s.tools[0].depth <= 1.0;
+       },
        check_monotone},
       {"not lost", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s); }, check_lost},
       {"no force in the air", 0,
        [](const Scene& s) {
-         return s.load == "none" && s.support_moves == 0.0 && s.tools.size() == 1 && !is_cut(s) && s.jitter == 0.0;
+         return s.load == "none" && s.support_moves == 0.0 && s.tools.size() == 1 && !is_cut(s) && s.jitter == 0.0 &&
+                !s.tools[0].opposite;
        },
        check_free},
       {"work of a closed path", 0,
@@ -185,7 +186,7 @@ const std::vector<Oracle>& laws_of_physics() {
        check_settled},
       {"no penetration", 0,
        [](const Scene& s) {
-         return all_paths(s, {"press", "hold"}) && !is_cut(s) && !has_inertia(s);
+         return all_paths(s, {"press", "hold"}) && !is_cut(s) && !grasps(s) && !has_inertia(s);
        },
        check_penetration},
   };

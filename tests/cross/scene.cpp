@@ -1,5 +1,6 @@
 #include "scene.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <istream>
 #include <map>
@@ -64,6 +65,11 @@ void write(std::string& text, const std::string& prefix, Visit&& visit_values) {
 }
 
 }  // namespace
+
+bool is_cut(const Scene& s) {
+  return s.cuts > 0 ||
+         std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
+}
 
 const std::vector<std::string>& words_of(const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> words{

@@ -81,6 +81,9 @@ void visit(Value& s, F&& f) {
   f("pose", s.pose), f("member", s.member), f("cuts", s.cuts), f("seed", s.seed);
 }
 
+/// Whether a blade or an order cuts the body.
+bool is_cut(const Scene& scene);
+
 /// The words that a value may have, such as the kinds of bodies; empty for a number.
 const std::vector<std::string>& words_of(const std::string& name);
 

@@ -34,9 +34,16 @@ PALPATE_INLINE double BladeSweep::side(const Vector3& p, const Vector3& q, const
 
 PALPATE_INLINE bool BladeSweep::crosses_triangle(const Vector3& p, const Vector3& q, const Vector3& x, const Vector3& y,
                                                  const Vector3& z) noexcept {
-  if ((volume(x, y, z, p) >= 0.0) == (volume(x, y, z, q) >= 0.0)) return false;
+  // A point this near to the plane is on it: rounding, and so the pose of a body, does not decide on which side it is.
+  constexpr double on_plane = 1e-9;  // of the distance from a corner
+  const Vector3 normal = cross(y - x, z - x);
+  const double margin = on_plane * normal.norm();
+  const auto is_in_front = [&](const Vector3& at) { return normal.dot(at - x) >= -margin * (at - x).norm(); };
+  if (is_in_front(p) == is_in_front(q)) return false;
+  const double beside = on_plane * (q - p).norm() * (z - x).norm() * (y - x).norm();
   const double u = side(p, q, x, y), v = side(p, q, y, z), w = side(p, q, z, x);
-  return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+  const double least = std::min({u, v, w}), most = std::max({u, v, w});
+  return least >= -beside || most <= beside;
 }
 
 }}  // namespace palpate
