@@ -32,8 +32,8 @@ PALPATE_INLINE void ServoBlade::reset() noexcept {
   status_ = {};
 }
 
-/// Length of the edge in tissue [m]. Between two points of the edge of which one is in tissue, where it leaves the tissue
-/// is found by bisection: the force has no steps while the edge comes in sideways.
+/// Length of the edge in tissue [m]. Between two points of the edge of which one is in tissue, where it leaves the
+/// tissue is found by bisection: the force has no steps while the edge comes in sideways.
 PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const noexcept {
   const Vector3& edge = cut_.tool().edge;
   const Eigen::Isometry3d to_model = inverse(tissue.to_world());
