@@ -272,7 +272,7 @@ std::vector<std::string> Coverage::all() {
            {"tools", 2},         {"grasps", 2},  {"facets", 3},  {"depth", 3},   {"friction", 2}, {"contrast", 3},
            {"poisson_ratio", 4}, {"cuts", 2},    {"threads", 2}, {"rate", 3}}) {
     axes.emplace_back();
-    for (const std::string& word : words_of(std::string(axis) == "tool" ? "kind" : axis))
+    for (const std::string& word : words_of(std::string_view(axis) == "tool" ? "kind" : axis))
       axes.back().emplace_back(axis, word);
     for (int i = 0; i < ranges; ++i) axes.back().emplace_back(axis, std::to_string(i));
   }

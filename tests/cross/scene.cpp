@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <istream>
 #include <map>
 #include <sstream>
@@ -71,8 +72,8 @@ bool is_cut(const Scene& s) {
          std::any_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) { return t.kind == "blade"; });
 }
 
-const std::vector<std::string>& words_of(const std::string& name) {
-  static const std::map<std::string, std::vector<std::string>> words{
+const std::vector<std::string>& words_of(std::string_view name) {
+  static const std::map<std::string, std::vector<std::string>, std::less<>> words{
       {"body", {"block", "plate", "lobe", "dome", "tube", "sphere", "organ"}},
       {"regions", {"one", "layer", "half", "inclusion"}},
       {"touched", {"top", "surface"}},

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cross {
@@ -85,7 +86,7 @@ void visit(Value& s, F&& f) {
 bool is_cut(const Scene& scene);
 
 /// The words that a value may have, such as the kinds of bodies; empty for a number.
-const std::vector<std::string>& words_of(const std::string& name);
+const std::vector<std::string>& words_of(std::string_view name);
 
 /// One line per value that differs from the plainest scene: "name value", "tool 0 name value". Numbers are exact.
 std::string to_text(const Scene& scene);
