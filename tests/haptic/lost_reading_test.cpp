@@ -68,7 +68,8 @@ TEST_CASE("after lost readings the tool is swept from its last proxy", "[haptic]
   CHECK(s.force.force()[2] > 0.1);  // it is above the plate, which it dents
 }
 
-TEST_CASE("a grasp begins with a press of the button, not with a reading that returns", "[haptic][servo][grasp][extreme][D15]") {
+TEST_CASE("a grasp begins with a press of the button, not with a reading that returns",
+          "[haptic][servo][grasp][extreme][D15]") {
   test::Pad pad = test::make_pad("z1");
   ServoOptions options;
   options.grasp_buttons = 1;
@@ -132,6 +133,5 @@ TEST_CASE("a tool that cannot be read leaves no force on the tissue", "[haptic][
     if (k == 85) REQUIRE(servo.contact_force().norm() > 0.1);
   }
   const ServoSnapshot& snapshot = servo.read_snapshot();
-  for (std::size_t i = 0; i < snapshot.force_count; ++i)
-    CHECK(snapshot.forces[i].force.in_model_axes().norm() == 0.0);
+  for (std::size_t i = 0; i < snapshot.force_count; ++i) CHECK(snapshot.forces[i].force.in_model_axes().norm() == 0.0);
 }

@@ -34,8 +34,8 @@ PALPATE_INLINE Vector3 TissueGroup::Member::placed(const Vector3& x) const noexc
 
 PALPATE_INLINE void TissueGroup::build() {
   if (members_.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no members");
-  // That of a single member is copied: its contact points are those of the surface at the member's set-up, which loads or
-  // a pose may have moved since.
+  // That of a single member is copied: its contact points are those of the surface at the member's set-up, which loads
+  // or a pose may have moved since.
   if (members_.size() == 1) {
     surface_ = members_.front().tissue.contact_surface();
   } else {
