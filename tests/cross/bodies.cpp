@@ -130,8 +130,9 @@ class BodyMesh {
   }
 
   palpate::Mesh<E> mesh;
-  double size = 0.0;    ///< largest extent before the change [m]
-  NodeId top_node = 0;  ///< the touchable node that is the nearest to the middle of the top
+  std::string division;  ///< Body::division
+  double size = 0.0;     ///< largest extent before the change [m]
+  NodeId top_node = 0;   ///< the touchable node that is the nearest to the middle of the top
 
  private:
   void make_grid() {
@@ -230,12 +231,12 @@ class BodyMesh {
     const auto low = [&](const Vector3& c) { return c[2] < -margin; };
     const auto far = [&](const Vector3& c) { return c[0] > margin; };
     const auto inside = [&](const Vector3& c) { return c.norm() < 0.25 * extent; };
-    bool divided = false;
-    if (scene_.regions == "layer") divided = divide_by(low);
-    if (scene_.regions == "inclusion") divided = divide_by(inside);
-    if (!divided && (split || scene_.regions != "one")) divided = divide_by(far);
+    division = "one";
+    if (scene_.regions == "layer" && divide_by(low)) division = "layer";
+    if (scene_.regions == "inclusion" && divide_by(inside)) division = "inclusion";
+    if (division == "one" && (split || scene_.regions != "one") && divide_by(far)) division = "half";
     mesh.region_names = {"first"};
-    if (divided)
+    if (division != "one")
       mesh.region_names.emplace_back("second");
     else
       mesh.regions.assign(mesh.elements.size(), 0);
@@ -378,7 +379,8 @@ void build(const Scene& scene, const Change& change, Body& body, palpate::Mesh<E
   BodyMesh<E> made(scene, change);
   body.conditions = make_conditions(scene, change, made.size, made.top_node);
   body.moduli = {scene.youngs_modulus};
-  if (made.mesh.region_count() == 2)
+  body.division = made.division;
+  if (body.division != "one")
     body.moduli.push_back(scene.youngs_modulus * (scene.regions == "one" ? 1.0 : scene.contrast));
   body.density = scene.density / (change.scale * change.scale);
   body.size = change.scale * made.size;

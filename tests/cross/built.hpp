@@ -13,6 +13,7 @@
 
 #include <Eigen/Geometry>
 
+#include <string>
 #include <vector>
 
 namespace cross {
@@ -41,6 +42,7 @@ struct Body {
   palpate::Mesh<palpate::Hex8> hexahedra;
   palpate::Scene conditions;
   std::vector<double> moduli;  ///< Young's modulus of every region [Pa]
+  std::string division;        ///< word of the regions as made: one that leaves a region empty is replaced
   double density = 0.0;        ///< in the change's units, so that the motion takes the same time
   double size = 0.0;           ///< largest extent [m]
 };

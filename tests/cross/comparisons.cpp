@@ -157,6 +157,17 @@ std::vector<Finding> check_newton(const Scene& s, const Run& r) {
   const Run other = cross::run(s, {.solver = "newton"});
   return compare_at_rest("Newton's method", s, r, other, 0.05);
 }
+/// A press of tissue without memory that takes longer ends with the same force.
+bool ends_at_rest(const Scene& s) {
+  const bool vibrates = moves(s.solver) && (s.inertia || s.solver.find("quasi_newton") == std::string::npos);
+  return !vibrates && !is_cut(s) && s.law != "viscoelastic" &&
+         std::all_of(s.tools.begin(), s.tools.end(),
+                     [](const ToolValue& t) { return t.path == "press" || t.path == "hold"; });
+}
+std::vector<Finding> check_longer(const Scene& s, const Run& r) {
+  const Change longer{.pause = 0.2};
+  return compare_at_rest("longer press", s, r, cross::run(s, {.change = longer}), 0.05, longer);
+}
 bool has_work(const Scene& s) {
   return moves(s.solver) && s.step >= 0.005;
 }
@@ -176,6 +187,10 @@ Status excuses() {
   return s;
 }
 
+double force_scale(const Scene& scene, double peak) {
+  return std::max(peak, 1e-4 * scene.youngs_modulus * scene.edge * scene.edge);
+}
+
 Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected, Status excuse) {
   Finding f{oracle, tick, tool, found, expected};
   // A flag of the ticks shortly before counts: a tissue that moves has the force of its last step.
@@ -193,13 +208,19 @@ Finding at(const char* oracle, const Run& run, int tick, int tool, double found,
 
 namespace {
 
-/// Difference of a force from that of another run in the same tick, or one tick before or after: a contact or a cut may
-/// begin a tick later.
-double difference(const Run& run, const Run& other, std::size_t k, std::size_t t) {
+/// Difference of a force, or of a torque divided by `arm` [m], from that of another run in the same tick, or one tick
+/// before or after: a contact or a cut may begin a tick later.
+double difference(const Run& run, const Run& other, std::size_t k, std::size_t t, double arm) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = k == 0 ? 0 : k - 1; i <= std::min(k + 1, other.ticks.size() - 1); ++i)
-    least = std::min(least, (run.ticks[k][t].force - other.ticks[i][t].force).norm());
+  const ToolTick& a = run.ticks[k][t];
+  for (std::size_t i = k == 0 ? 0 : k - 1; i <= std::min(k + 1, other.ticks.size() - 1); ++i) {
+    const ToolTick& b = other.ticks[i][t];
+    least = std::min(least, std::max((a.force - b.force).norm(), (a.torque - b.torque).norm() / arm));
+  }
   return least;
+}
+bool is_equal(const ToolTick& a, const ToolTick& b) {
+  return a.force == b.force && a.torque == b.torque && a.status == b.status && a.bound == b.bound;
 }
 
 bool is_free(const std::vector<ToolTick>& tick) {
@@ -212,7 +233,7 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
   if (run.refused != other.refused)
     return {{name, 0, 0, run.refused.empty() ? 0.0 : 1.0, other.refused.empty() ? 0.0 : 1.0, false,
              run.refused + "/" + other.refused}};
-  const double scale = std::max({run.peak, other.peak, 1e-4 * scene.youngs_modulus * scene.edge * scene.edge});
+  const double scale = force_scale(scene, std::max(run.peak, other.peak));
   std::vector<Finding> findings;
   const std::size_t ticks = std::min(run.ticks.size(), other.ticks.size());
   // After a difference that a flag reports, contacts differ until nothing presses any more.
@@ -221,15 +242,15 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
     if (has_diverged && is_free(run.ticks[k]) && is_free(other.ticks[k])) has_diverged = false;
     for (std::size_t t = 0; t < run.ticks[k].size(); ++t) {
       const ToolTick &a = run.ticks[k][t], &b = other.ticks[k][t];
-      const bool same = tolerance > 0.0 ? difference(run, other, k, t) <= tolerance * scale
-                                        : a.force == b.force && a.status == b.status && a.bound == b.bound;
+      const double arm = 3.0 * scene.tools[t].radius;  // of the ends of a capsule
+      const bool same = tolerance > 0.0 ? difference(run, other, k, t, arm) <= tolerance * scale : is_equal(a, b);
       if (same) continue;
       const int tick = static_cast<int>(k), tool = static_cast<int>(t);
       Finding f = at(name, run, tick, tool, a.force.norm(), b.force.norm(), excuses());
       f.flagged =
           tolerance > 0.0 && (has_diverged || f.flagged || at(name, other, tick, tool, 0.0, 0.0, excuses()).flagged);
       has_diverged = f.flagged;
-      if (a.force == b.force) f.flags += " flags or bounds differ";
+      if (a.force == b.force) f.flags += " torques, flags or bounds differ";
       findings.push_back(f);
       if (!f.flagged) return findings;
     }
@@ -238,15 +259,16 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
 }
 
 std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
-                                     double tolerance) {
+                                     double tolerance, const Change& change) {
   if (run.refused != other.refused || !run.refused.empty()) return {};
-  const std::size_t tick = static_cast<std::size_t>(last_hold(scene) - 2);
-  const double scale = std::max({run.peak, other.peak, 1e-4 * scene.youngs_modulus * scene.edge * scene.edge});
-  for (std::size_t t = 0; t < run.ticks[tick].size(); ++t) {
-    const Vector3 &a = run.ticks[tick][t].force, &b = other.ticks[tick][t].force;
+  const int own = last_hold(scene) - 2, later = last_hold(scene, change) - 2;
+  const double scale = force_scale(scene, std::max(run.peak, other.peak));
+  for (std::size_t t = 0; t < scene.tools.size(); ++t) {
+    const Vector3 &a = run.ticks[static_cast<std::size_t>(own)][t].force,
+                  &b = other.ticks[static_cast<std::size_t>(later)][t].force;
     if ((a - b).norm() <= tolerance * scale) continue;
-    Finding f = at(name, run, static_cast<int>(tick), static_cast<int>(t), a.norm(), b.norm(), excuses());
-    f.flagged = f.flagged || at(name, other, static_cast<int>(tick), 0, 0.0, 0.0, excuses()).flagged;
+    Finding f = at(name, run, own, static_cast<int>(t), a.norm(), b.norm(), excuses());
+    f.flagged = f.flagged || at(name, other, later, 0, 0.0, 0.0, excuses()).flagged;
     return {f};
   }
   return {};
@@ -278,6 +300,7 @@ const std::vector<Oracle>& comparisons() {
       {"not cuttable", 1, is_uncut, check_uncut},
       {"all contacts", 3, [](const Scene& s) { return s.capacity == 0; }, check_all_rows},
       {"Newton's method", 2, has_newton, check_newton},
+      {"longer press", 2, ends_at_rest, check_longer},
       {"worker", 3, has_work, check_worker},
   };
   return all;

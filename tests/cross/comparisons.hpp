@@ -9,6 +9,9 @@ namespace cross {
 /// displacements large is true of two runs alike.
 palpate::Status excuses();
 
+/// What differences of forces of runs with this largest force are relative to [N]; not zero where nothing presses.
+double force_scale(const Scene& scene, double peak);
+
 /// A finding in a tick; flagged if one of the flags of `excuse` is set in it or shortly before.
 Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected,
            palpate::Status excuse);
@@ -16,9 +19,9 @@ Finding at(const char* oracle, const Run& run, int tick, int tool, double found,
 /// Findings where forces differ by more than `tolerance` of the largest force; with 0 where bits, flags or bounds
 /// differ, and then no flag excuses it. Ends at the first silent one.
 std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance);
-/// The same only in the last tick of the second phase.
+/// The same only at the end of the second phase; `change` is that of the other run.
 std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
-                                     double tolerance);
+                                     double tolerance, const Change& change = {});
 
 const std::vector<Oracle>& comparisons();
 const std::vector<Oracle>& laws_of_physics();

@@ -126,8 +126,7 @@ TEST_CASE("the plainest scene passes, and a reference has its force", "[cross]")
     INFO(f.oracle << ' ' << f.tick << ' ' << f.found << ' ' << f.expected << ' ' << f.flags);
     CHECK(f.flagged);
   }
-  // On facets of half a radius the force is within 15 % of that on the fine mesh, and of the half-space for a thick
-  // body.
+  // On facets of half a radius the force is within a fifth of that on the fine mesh.
   Manner fine;
   fine.reference = true;
   fine.capacity = 1000;

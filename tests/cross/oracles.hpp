@@ -14,7 +14,7 @@ struct Finding {
   std::string oracle;
   int tick = 0, tool = 0;
   double found = 0.0, expected = 0.0;
-  bool flagged = false;  ///< a status flag, a note or a refusal reported it
+  bool flagged = false;  ///< a status flag reported it
   std::string flags{};   ///< names of the flags
 };
 

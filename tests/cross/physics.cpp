@@ -30,9 +30,6 @@ bool is_one_press(const Scene& s) {
   return s.tools.size() == 1 && s.tools[0].kind != "blade" && !s.tools[0].grasps && s.load == "none" &&
          s.support_moves == 0.0 && !is_cut(s) && all_paths(s, {"press", "hold"});
 }
-double force_scale(const Scene& s, const Run& r) {
-  return std::max(r.peak, 1e-4 * s.youngs_modulus * s.edge * s.edge);
-}
 
 std::vector<Finding> check_finite(const Scene&, const Run& r) {
   for (std::size_t k = 0; k < r.ticks.size(); ++k)
@@ -44,7 +41,7 @@ std::vector<Finding> check_finite(const Scene&, const Run& r) {
 /// Forces on the tissue and on the tools are equal, except where the solution has not converged.
 std::vector<Finding> check_reaction(const Scene& s, const Run& r) {
   for (std::size_t k = 0; k < r.imbalance.size(); ++k)
-    if (!(r.imbalance[k] <= 1e-6 * force_scale(s, r)))
+    if (!(r.imbalance[k] <= 1e-6 * force_scale(s, r.peak)))
       if (Finding f = at("action and reaction", r, static_cast<int>(k), 0, r.imbalance[k], 0.0, excuses()); !f.flagged)
         return {f};
   return {};
@@ -69,7 +66,7 @@ std::vector<Finding> check_pull(const Scene& s, const Run& r) {
   const Vector3 out = place_of(s, s.tools[0].u, s.tools[0].v, s.tools[0].opposite).normal;
   return first_failure("no pull", r, 0, static_cast<int>(r.ticks.size()), 0, [&](int k, double& found, double&) {
     found = r.ticks[static_cast<std::size_t>(k)][0].force.dot(out);
-    return found < -0.02 * force_scale(s, r);
+    return found < -0.02 * force_scale(s, r.peak);
   });
 }
 
@@ -80,7 +77,7 @@ std::vector<Finding> check_monotone(const Scene& s, const Run& r) {
   return first_failure("grows with depth", r, 0, first_hold(s), 0, [&](int k, double& found, double& expected) {
     found = r.ticks[static_cast<std::size_t>(k)][0].force.dot(out);
     most = std::max(most, found), expected = most;
-    return found < most - 0.03 * force_scale(s, r);
+    return found < most - 0.03 * force_scale(s, r.peak);
   });
 }
 
@@ -105,7 +102,7 @@ std::vector<Finding> check_free(const Scene& s, const Run& r) {
     auto found = first_failure("no force in the air", r, 0, first_hold(s), t, [&](int k, double& f, double&) {
       const ToolTick& tick = r.ticks[static_cast<std::size_t>(k)][t];
       f = tick.force.norm();
-      return tick.depth < -margin && f > 1e-3 * force_scale(s, r);
+      return tick.depth < -margin && f > 1e-3 * force_scale(s, r.peak);
     });
     if (!found.empty()) return found;
   }
@@ -139,7 +136,7 @@ std::vector<Finding> check_settled(const Scene& s, const Run& r) {
       const double one = std::min(now.norm(), before.norm());
       if (one > swing) swing = one, worst = k;
     }
-    if (swing > 0.02 * force_scale(s, r))
+    if (swing > 0.02 * force_scale(s, r.peak))
       return {at("settles", r, worst, static_cast<int>(t), swing, r.peak, doubts())};
   }
   return {};

@@ -3,10 +3,6 @@
 #include "laws.hpp"
 #include "tissue.hpp"
 
-#include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/generators_round.hpp>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -264,32 +260,10 @@ class Program {
     return s_.edge * std::max({s_.cells_x, s_.cells_y, s_.cells_z});
   }
   std::string second_region(double extent) const {
-    if (is_divided_by_x()) return "centre[0] > " + text_of(1e-9 * extent);
-    if (s_.regions == "layer") return "centre[2] < " + text_of(-1e-9 * extent);
+    if (body_.division == "half") return "centre[0] > " + text_of(1e-9 * extent);
+    if (body_.division == "layer") return "centre[2] < " + text_of(-1e-9 * extent);
     return "centre.norm() < " + text_of(0.25 * extent);
   }
-  /// Whether the division that the scene requires leaves a region empty, so that it is replaced by that across x.
-  bool is_divided_by_x() const {
-    if (s_.regions != "layer" && s_.regions != "inclusion") return true;
-    const Vector3 extent(s_.edge * Vector3(s_.cells_x, s_.cells_y, s_.cells_z));
-    if (is_round(s_)) return is_left_empty(palpate::sphere_tet4(radius(), s_.cells_x), 0.0);
-    const std::array<int, 3> cells{s_.cells_x, s_.cells_y, s_.cells_z};
-    const Vector3 origin(-0.5 * extent[0], -0.5 * extent[1], 0.0);
-    if (is_hexahedral(s_)) return is_left_empty(palpate::box_hex8(extent, cells, origin), 0.5 * extent[2]);
-    return is_left_empty(palpate::box_tet4(extent, cells, palpate::BoxSplit::five_mirrored, origin), 0.5 * extent[2]);
-  }
-  template <class E>
-  bool is_left_empty(const palpate::Mesh<E>& mesh, double height) const {
-    const double extent = largest_extent();
-    const auto count = std::ranges::count_if(mesh.elements, [&](const auto& element) {
-      Vector3 centre = Vector3::Zero();
-      for (const palpate::NodeId node : element) centre += mesh.position(node);
-      centre = centre / E::nodes - Vector3(0.0, 0.0, height);
-      return s_.regions == "layer" ? centre[2] < -1e-9 * extent : centre.norm() < 0.25 * extent;
-    });
-    return count == 0 || count == static_cast<std::ptrdiff_t>(mesh.elements.size());
-  }
-
   void curve() {
     if (!is_one_of(s_.body, {"dome", "tube", "organ"})) return;
     headers_.insert("cmath");

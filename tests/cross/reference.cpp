@@ -73,8 +73,8 @@ Body reference_body(const Scene& s) {
 
 namespace {
 
-/// A force that is not flagged is within its own bound or a tenth of the reference; ticks in which a flag is set
-/// although the force is within 5 % are counted by `judge`.
+/// A force is within its own bound or a tenth of the reference, or flagged. A flag on a force within 5 % of the
+/// reference is a false alarm.
 std::vector<Finding> check_reference(const Scene& s, const Run& r) {
   const Run fine = cross::run(s, {.member = "alone", .pose = "identity", .capacity = 1000, .reference = true});
   if (!fine.refused.empty()) return {};

@@ -50,7 +50,6 @@ class Player {
   Player(const Scene& scene, const Manner& manner)
       : scene_(scene), manner_(manner), pose_(pose_of(manner.pose.empty() ? scene.pose : manner.pose)) {
     const std::string solver = manner.solver.empty() ? scene.solver : manner.solver;
-    const std::string element = manner.element.empty() ? scene.element : manner.element;
     TissueOptions options;
     options.threads = manner.threads > 0 ? manner.threads : scene.threads;
     options.cache_file = manner.cache_file;
@@ -58,9 +57,9 @@ class Player {
     options.axes = manner.change.linear;
     const Body body = manner.reference ? reference_body(scene) : make_body(scene, manner.change);
     const Composition* composition = manner.reference ? find_composition("tet10", "linear", "condensed")
-                                                      : find_composition(element, scene.law, solver);
+                                                      : find_composition(scene.element, scene.law, solver);
     if (composition == nullptr)
-      throw std::runtime_error("no composition " + element + ", " + scene.law + ", " + solver);
+      throw std::runtime_error("no composition " + scene.element + ", " + scene.law + ", " + solver);
     Scene built = scene;
     built.solver = composition->solver;
     built.element = composition->element;

@@ -11,12 +11,11 @@ namespace cross {
 /// How a scene is run, other than the scene itself states.
 struct Manner {
   Change change{};
-  std::string solver{};   ///< another one than the scene's; empty: that
-  std::string element{};  ///< the same
-  std::string member{};   ///< the same for the scene's member
-  std::string pose{};     ///< the same for its pose
-  int threads = 0;        ///< the same; 0: the scene's
-  int capacity = -1;      ///< the same; -1: the scene's
+  std::string solver{};  ///< another one than the scene's; empty: that
+  std::string member{};  ///< the same for the scene's member
+  std::string pose{};    ///< the same for its pose
+  int threads = 0;       ///< the same; 0: the scene's
+  int capacity = -1;     ///< the same; -1: the scene's
   std::string cache_file{};
   int plays = 1;           ///< with a reset of servo and tissue in between; the last one is recorded
   bool new_servo = false;  ///< another servo for every play

@@ -6,7 +6,6 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/model/setup_report.hpp>
 
 #include <memory>
 #include <string>
@@ -35,9 +34,6 @@ class Tissue {
   virtual void set_pose(const Eigen::Isometry3d& pose) = 0;
   /// Orders a cut; false for a tissue that cannot be cut.
   virtual bool cut(const palpate::BladeSweep& sweep) = 0;
-  virtual const palpate::SetupReport& report() const = 0;
-  /// Displacement of the nodes under the forces of the newest snapshot, 3 per admitted node [m].
-  virtual palpate::VectorX displacement(std::span<const palpate::VertexForce> forces) = 0;
   /// Vertices of the contact surface under forces on it, world frame [m]. Requires their columns, as a tick does.
   virtual std::vector<Vector3> surface(std::span<const palpate::VertexForce> forces) = 0;
 };

@@ -75,13 +75,6 @@ class TissueOf final : public Tissue {
     }
     return false;
   }
-  const palpate::SetupReport& report() const override { return model_->report(); }
-  palpate::VectorX displacement(std::span<const palpate::VertexForce> forces) override {
-    if (!group_) return model_->displacement(forces);
-    std::vector<palpate::VertexForce> own(forces.size());
-    own.resize(group_->forces_on(0, forces, own));
-    return model_->displacement(own);
-  }
   std::vector<palpate::Vector3> surface(std::span<const palpate::VertexForce> forces) override {
     return group_ ? pressed_surface(*group_, forces) : pressed_surface(*model_, forces);
   }

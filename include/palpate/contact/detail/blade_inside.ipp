@@ -24,14 +24,15 @@ PALPATE_INLINE bool is_in_tissue(const ContactSurface& surface, const Vector3& p
   const Vector3 to = nearest.point - p;
   const double distance = to.norm(), tiny = 1e-6 * reach;
   const Vector3 ahead = distance > tiny ? Vector3(to / distance) : Vector3(-nearest.outward);
-  const Vector3 path = (distance + reach) * ahead;
+  const double length = distance + reach;
+  const Vector3 path = length * ahead;
   bool leaves = false;
   surface.bvh().visit_along(p, path, tiny, [&](int t) {
     const double along = surface.normal(t).dot(path);
-    if (!(along > least_slope * path.norm())) return 1.0;
+    if (!(along > least_slope * length)) return 1.0;
     const Triangle& v = surface.triangle(t);
     const double part = surface.normal(t).dot(surface.position(v[0]) - p) / along;
-    if (!(part * path.norm() >= -tiny && part <= 1.0)) return 1.0;
+    if (!(part * length >= -tiny && part <= 1.0)) return 1.0;
     const Vector3 x = p + part * path;
     const TrianglePoint on = closest_on(t, x);
     const Vector3 y = on.weights[0] * surface.position(v[0]) + on.weights[1] * surface.position(v[1]) +
