@@ -136,6 +136,26 @@ TEST_CASE("a still tissue is the same through adaptors and in a group of one", "
   }
 }
 
+TEST_CASE("an update of a group of one that has not changed keeps its bits", "[contact][group][tissue]") {
+  auto tissue = pad<test::Pad>();
+  TissueGroup group(tissue);
+  const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height, 3e-3);
+  HapticServo alone(tissue, SphereTool{.radius = radius}), grouped(group, SphereTool{.radius = radius});
+  int different = 0, pressed = 0;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    if (k % 50 == 49) {
+      tissue.set_pose(tissue.pose());
+      group.update();
+    }
+    alone.tick(path[k]);
+    grouped.tick(path[k]);
+    pressed += alone.contact_force().norm() > 0.0;
+    different += alone.contact_force() != grouped.contact_force();
+  }
+  CHECK(pressed > 100);
+  CHECK(different == 0);
+}
+
 TEST_CASE("measured errors of forces are the same through adaptors and in a group of one", "[contact][group][tissue]") {
   Scene scene;
   scene.fix("z0").touch(where::sphere({0.015, 0.015, test::pad_height}, 6e-3), {.radius = radius});

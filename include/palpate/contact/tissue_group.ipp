@@ -112,7 +112,7 @@ PALPATE_INLINE void TissueGroup::update() noexcept {
   }
   surface_.move_to(moved_);
   join_errors();
-  ++updates_;
+  if (members_.size() > 1) ++updates_;  // the compliance of one member alone stays that of the member
 }
 
 PALPATE_INLINE std::size_t TissueGroup::forces_on(int member, std::span<const VertexForce> forces,
