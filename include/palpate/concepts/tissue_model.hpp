@@ -80,6 +80,10 @@ concept HasTryCut = requires(T& tissue, const BladeSweep& sweep) {
   { tissue.try_cut(sweep) } noexcept -> HookResult<bool>;
 };
 template <class T>
+concept HasVertexRotation = requires(const T& constant) {
+  { constant.vertex_rotation(0) } noexcept -> HookResult<Matrix3>;
+};
+template <class T>
 concept HasWorkHooks = requires(T& tissue, bool is) {
   { tissue.background_work() } -> HookResult<BackgroundStep>;
   { tissue.report_slow(is) } noexcept -> HookResult<void>;
@@ -87,7 +91,7 @@ concept HasWorkHooks = requires(T& tissue, bool is) {
 };
 template <class T>
 concept HasHooks = HasPrefetch<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
-                   HasPrepareTools<T> && HasTryCut<T> && HasWorkHooks<T>;
+                   HasPrepareTools<T> && HasTryCut<T> && HasVertexRotation<T> && HasWorkHooks<T>;
 
 template <class Member>
 struct ClassOf;
@@ -157,6 +161,8 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// it.
 /// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
 /// pending. Only such a tissue accepts a BladeTool.
+/// - `vertex_rotation(v)` const -> Matrix3: how the surface at vertex v is rotated relative to the positions of its
+/// SubfacetCompliance.
 /// - `background_work()` -> BackgroundStep: work in a background thread, called by a BackgroundWorker: time steps,
 /// cuts. May throw: the worker then stops.
 /// - `report_slow(slow)` -> void: reports whether a BackgroundWorker cannot keep up.

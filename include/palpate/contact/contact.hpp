@@ -25,15 +25,16 @@ struct ToolRadii {
 
 /// Limits and parameters of the contact solution of a tick.
 struct ContactParameters {
-  int maximum_iterations = 4;     ///< linearisations per tick
-  double force_tolerance = 1e-3;  ///< relative change of the force between linearisations that ends the tick; for
-                                  ///< spheres without friction also its estimate after the first one
-  bool local_compliance = true;   ///< spheres smaller than facets get the dent that facets do not show
-  double sample_spacing = 0.5;    ///< of contact points on the surface, in radii of the smallest tool
-  double friction = 0.0;          ///< Coulomb's coefficient; 0 has no cost
-  double grasp_radius = 0.0;      ///< [m] a tool that grasps holds the vertices within it, up to eight; 0: one point
-  int capacity = 0;               ///< of contacts of all tools; of more, evenly spread ones are kept (degraded_model);
-                                  ///< 0: the default for the tools
+  int maximum_iterations = 4;       ///< linearisations per tick
+  double force_tolerance = 1e-3;    ///< relative change of the force between linearisations that ends the tick; for
+                                    ///< spheres without friction also its estimate after the first one
+  bool subfacet_compliance = true;  ///< points finer than facets, where the surface has a SubfacetCompliance
+  int pressing_points = 24;         ///< of them in a press, about the same at any depth and on any mesh
+  double sample_spacing = 0.5;      ///< of contact points on other surfaces, in radii of the smallest tool
+  double friction = 0.0;            ///< Coulomb's coefficient; 0 has no cost
+  double grasp_radius = 0.0;        ///< [m] a tool that grasps holds the vertices within it, up to eight; 0: one point
+  int capacity = 0;  ///< of contacts of all tools; of more, evenly spread ones are kept (degraded_model);
+                     ///< 0: the default for the tools
 
   /// The same with a capacity for this number of tools.
   ContactParameters for_tools(std::size_t tools) const noexcept;
@@ -55,7 +56,6 @@ struct ContactTool {
   Vector3 force = Vector3::Zero();   ///< of the tissue on the tool [N]
   double radius = 0.0;               ///< [m]
   double compliance = 0.0;           ///< of the coupling between proxy and device [m/N]; 0 is rigid
-  double local_compliance = 0.0;     ///< of the dent that coarse facets do not show, at the last force [m/N]
   Vector3 motion = Vector3::Zero();  ///< of the device since the last tick [m]
   bool active = false;               ///< takes part in this tick
   bool grasping = false;             ///< grasps the point it touched when this became true
@@ -77,10 +77,6 @@ struct ContactTool {
   void lift() noexcept;
   /// Back to the state before the first tick; geometry and coupling stay.
   void reset() noexcept;
-  /// Between the device and the proxy [m/N].
-  double total_compliance() const noexcept { return compliance + local_compliance; }
-  /// Where the tool is: in the dent that coarse facets do not show, deeper than its proxy [m].
-  Vector3 position() const noexcept;
   /// Position of the proxy at which the coupling balances `force`; `floor` [m/N] is added to the compliance.
   Vector3 goal(double floor) const noexcept;
   /// The same for the rotation.

@@ -31,10 +31,7 @@ PALPATE_INLINE void ContactTool::reset() noexcept {
   *this = fresh;
 }
 PALPATE_INLINE Vector3 ContactTool::goal(double floor) const noexcept {
-  return target + (total_compliance() + floor) * force;
-}
-PALPATE_INLINE Vector3 ContactTool::position() const noexcept {
-  return proxy - local_compliance * force;
+  return target + (compliance + floor) * force;
 }
 PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
   return rotational_compliance > 0.0 ? rotation_by(rotational_compliance * torque) * target_rotation : target_rotation;

@@ -2,21 +2,21 @@
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>
-#include <palpate/contact/detail/local_contact.hpp>
 #include <palpate/contact/detail/proxy_motion.hpp>
-#include <palpate/contact/detail/row_shares.hpp>
+#include <palpate/contact/detail/point_levels.hpp>
 #include <palpate/contact/grasp.hpp>
 #include <palpate/contact/linear_model_error.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// All contacts of all tools with one tissue. Contact is enforced at material points of the surface: vertices, and a
-/// lattice on edges of `sample_spacing` radii or more. A sliding sphere reaches these points one after the other, each
-/// with zero force at first, so the force has no jump at edges. Each tick linearises the distance between sphere and
-/// deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the Signorini problem
-/// on the contact compliance J C J^T exactly, and repeats while the force still changes. The rows of that problem are
-/// the points that pressed last and those that the solution would let penetrate; rows are added until no point
-/// penetrates. The coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the
+/// All contacts of all tools with one tissue. Contact is enforced at material points of the surface, whose number
+/// depends on the tool and its depth, not on the mesh (ContactSamples, PointLevels); where the surface has a
+/// SubfacetCompliance, the force depends on the mesh as little. A sliding sphere reaches these points one after the
+/// other, each with zero force at first, so the force has no jump at edges. Each tick linearises the distance between
+/// sphere and deformed surface at the last proxy position (Ruspini's proxy on a deforming surface), solves the
+/// Signorini problem on the contact compliance J C J^T exactly, and repeats while the force still changes. The rows of
+/// that problem are the points that pressed last and those that the solution would let penetrate; rows are added until
+/// no point penetrates. The coupling between proxy and device enters as n_i . n_j / k between contacts of one tool: the
 /// stiffness rendered by the device is never more than k for any number of contacts, and the proxy never penetrates.
 /// docs/contact.md has the equations, limits and figures. Work is bounded by `ContactParameters::capacity`, iterations,
 /// rounds and candidates.
@@ -58,7 +58,7 @@ class ContactProblem {
   /// What `solve` returned for all tools does not include this: coarse_contact of one tool. For the end of a tick,
   /// after `force_error`.
   Status status_of(std::size_t t, const ContactTool& tool) const noexcept {
-    return local_.status(t, tool) | (coarse_[t] ? Status(StatusFlag::coarse_contact) : Status());
+    return tool.active && coarse_[t] ? Status(StatusFlag::coarse_contact) : Status();
   }
   /// The share of a tool's contact force, 0 to 1, at points whose facets face away from it, at rest and deformed: they
   /// push it out of the body on the wrong side. Grasped points do not count. No allocation; O(contacts).
@@ -106,6 +106,9 @@ class ContactProblem {
   void grasp(const TissueView& tissue, Tools tools) noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
+  inline void set_area(const ContactTool& tool, Candidate& c) const noexcept;
+  static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);
+  void start_levels(const TissueView& tissue, Tools tools) noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
@@ -131,7 +134,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
-  bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) noexcept;
+  bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
 
   ContactParameters parameters_;
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started
@@ -140,8 +143,7 @@ class ContactProblem {
   std::vector<Candidate*> pressing_;  // those of the last linearisation
   std::vector<Violated> violated_;
   ProxyMotion proxies_;
-  LocalContact local_;
-  RowShares shares_;
+  PointLevels levels_;
   std::array<Grasp, maximum_tools> grasps_{};
   std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;

@@ -17,7 +17,8 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
     : parameters_(checked(parameters.for_tools(1))),
       displacement_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
       start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
-      candidates_(surface, radii, parameters_.sample_spacing, parameters_.capacity, parameters_.local_compliance),
+      candidates_(made_samples(surface, radii, parameters_),
+                  parameters_.subfacet_compliance ? surface.subfacet() : nullptr, parameters_.capacity),
       rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
       pressing_(at(parameters_.capacity)),
       violated_(at(candidates_.maximum())),
@@ -45,25 +46,59 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
   return grasps_[at(c.tool)].holds(c, candidates_.sample_of(c));
 }
 
+/// Fine enough for the first touch of the smallest tool; coarse enough for the largest at depths about its radius.
+PALPATE_INLINE ContactSamples ContactProblem::made_samples(const ContactSurface& surface, const ToolRadii& radii,
+                                                           const ContactParameters& p) {
+  if (p.subfacet_compliance && surface.subfacet() != nullptr)
+    return {surface, PointLevels::finest_spacing * radii.smallest, PointLevels::coarsest_spacing * radii.largest};
+  const double finest = p.sample_spacing * radii.smallest;
+  return {surface, finest, std::max(finest, PointLevels::coarsest_of_mesh * radii.largest)};
+}
+
 /// Divides the rows among the tools that have contact points near them.
 PALPATE_INLINE void ContactProblem::share_rows(Tools tools) noexcept {
   std::array<double, maximum_tools> radius{};
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active && candidates_.has_any(static_cast<int>(t))) radius[t] = tools[t].radius;
-  shares_.begin_tick(radius, rows_.capacity(), candidates_.samples().densest());
+  levels_.begin_tick(candidates_.samples(), radius, rows_.capacity(), candidates_.subfacet() != nullptr,
+                     parameters_.pressing_points);
+}
+
+/// Tools that did not press yet get the level for the part of the surface that they have entered.
+PALPATE_INLINE void ContactProblem::start_levels(const TissueView& tissue, Tools tools) noexcept {
+  constexpr double pressing = 0.5;  // part of the surface entered that presses, in Hertz's theory
+  std::array<bool, maximum_tools> begins{};
+  std::array<double, maximum_tools> area{};
+  for (std::size_t t = 0; t < tools.size(); ++t) begins[t] = tools[t].active && rows_.pressing_force(t) == 0.0;
+  if (std::none_of(begins.begin(), begins.end(), [](bool b) { return b; })) return;
+  for (Candidate& c : candidates_.items()) {
+    if (!begins[at(c.tool)] || candidates_.least_gap(c) > 0.0) continue;
+    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tools[at(c.tool)], displacement_, c);
+    if (c.facing && c.gap < 0.0)
+      area[at(c.tool)] += pressing * candidates_.samples().area(c.sample, levels_.level(c.tool));
+  }
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (begins[t]) levels_.start(candidates_.samples(), static_cast<int>(t), area[t]);
+}
+
+/// A grasped point moves with a part of the surface as large as the tool's jaws.
+inline void ContactProblem::set_area(const ContactTool& tool, Candidate& c) const noexcept {
+  constexpr double of_jaws = 0.8;  // square radii
+  c.area =
+      c.grasped ? of_jaws * tool.radius * tool.radius : candidates_.samples().area(c.sample, levels_.level(c.tool));
 }
 
 inline bool ContactProblem::may_have_row(const Candidate& c) const noexcept {
-  return candidates_.is_moving(c) || shares_.keeps(c.tool, candidates_.samples().density(c.sample));
+  return candidates_.samples().level_of(c.sample) >= levels_.first(c.tool);
 }
 
-/// Of a tool with more pressing points than its share, those that its density keeps, with the largest forces, are kept.
+/// Of a tool with more pressing points than its share, those of its level with the largest forces are kept.
 inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;
   if (!may_have_row(c)) return c.lift();
   int& own = pressing_of_[at(c.tool)];
-  if (own < shares_.share(c.tool) && pressing_count_ < rows_.capacity()) {
+  if (own < levels_.share(c.tool) && pressing_count_ < rows_.capacity()) {
     ++own;
     pressing_[at(pressing_count_++)] = &c;
     return;
@@ -87,6 +122,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
   candidates_.begin_tick(tissue.contact_surface(), tools);
+  share_rows(tools);
+  for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.first(static_cast<int>(t)));
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
   double change = 0.0, before = 0.0;
@@ -95,28 +132,24 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
       status.set(StatusFlag::solver_not_converged);
       break;
     }
-    local_.apply(tools);
     proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
     if (iteration == 0) {
-      local_.start(tools, candidates_);
+      start_levels(tissue, tools);
       grasp(tissue, tools);
-      share_rows(tools);
     }
     if (candidates_.is_new()) prefetch(tissue);
     std::swap(start_, displacement_);
     solve_linearised(tissue, tools, iteration, status);
-    const double local_change = local_.predict(tools, candidates_, rows_);
     follow(tools);
-    if (rows_.has_moving()) proxies_.note_alternation(tools);
     proxies_.end(tools);
-    change = std::max(local_change, proxies_.relative_change(tools, rows_.largest_force_scale(tools)));
-    if (has_converged(tools, iteration, local_change, before, change)) break;
+    change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
+    if (has_converged(tools, iteration, before, change)) break;
     before = change;
   }
   rows_.stick(tools);
-  shares_.end_tick(rows_.count_pressing());
-  if (shares_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
+  levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area());
+  if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, change <= unsettled);
@@ -124,10 +157,9 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 }
 
 /// Whether the expected change by further linearisations is within the tolerance. `change` is that of the last one,
-/// `before` that of the one before it, `local_change` the part of the dent of coarse facets. Where the estimate of the
-/// next change ends the tick, `change` becomes that estimate.
-PALPATE_INLINE bool ContactProblem::has_converged(Tools tools, int iteration, double local_change, double before,
-                                                  double& change) noexcept {
+/// `before` that of the one before it. Where the estimate of the next change ends the tick, `change` becomes that
+/// estimate.
+PALPATE_INLINE bool ContactProblem::has_converged(Tools tools, int iteration, double before, double& change) noexcept {
   if (!arrived_ || candidates_.has_lost_forces()) return false;
   // Each step is smaller than the last by about the same ratio (the linearisation neglects the curvature of the
   // sphere), so the sum of the remaining steps is a geometric series. The first step is due to the motion of the
@@ -138,14 +170,14 @@ PALPATE_INLINE bool ContactProblem::has_converged(Tools tools, int iteration, do
   if (expected <= parameters_.force_tolerance) return true;
   if (iteration > 0) return false;
   // The first step is long when the device moves, but it was linearised close to where the tool arrives.
-  const double estimate = estimate_safety * (local_change + rows_.remaining_change(tools));
+  const double estimate = estimate_safety * rows_.remaining_change(tools);
   if (!(estimate <= parameters_.force_tolerance)) return false;
   change = estimate;
   return true;
 }
 
 PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
-  return shares_.deepest() > 0.0 ? shares_.deepest() / std::max(shares_.deepest(), rows_.deepest_push()) : 0.0;
+  return levels_.deepest() > 0.0 ? levels_.deepest() / std::max(levels_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
 PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std::size_t t) const noexcept {
@@ -231,7 +263,7 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   }
   parts.storage += model.storage * sum * sum / sphere.depth;
   parts.conditioning += model.conditioning * sum * sum / sphere.depth;
-  sphere.depth += shares_.deepest();  // points without rows sink in
+  sphere.depth += levels_.deepest();  // points without rows sink in
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
@@ -248,7 +280,7 @@ PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& s
   const double depth = std::min(contacts.depth, tool.radius),
                force = 4.0 / 3.0 * modulus * std::sqrt(tool.radius * depth) * depth;
   ContactTool sphere = tool;
-  sphere.half_length = sphere.local_compliance = 0.0;
+  sphere.half_length = 0.0;
   sphere.force = Vector3(0.0, 0.0, force);
   const double bound = body.accuracy->error(sphere, static_cast<int>(t), contacts.rows, depth).bound;
   return bound > coarse_error * force && bound < infinity;
@@ -334,8 +366,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   start_.clear();
   candidates_.reset();
   rows_.reset();
-  local_.reset();
-  shares_.reset();
+  levels_.reset();
   proxies_ = {};
   coarse_.fill(false);
   for (Grasp& g : grasps_) g.release();
@@ -388,15 +419,18 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
   predict_normals(iteration);
   rows_.clear();
   for (std::size_t t = 0; t < tools.size(); ++t)
-    for (Candidate& c : grasps_[t].rows()) rows_.add(tissue.contact_surface(), candidates_, c);
+    for (Candidate& c : grasps_[t].rows()) {
+      set_area(tools[t], c);
+      rows_.add(tissue, candidates_, c);
+    }
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     if (rows_.count() < rows_.capacity() && !is_grasped(c))
-      rows_.add(tissue.contact_surface(), candidates_, c);
+      rows_.add(tissue, candidates_, c);
     else
       c.lift();  // only rows carry forces
   }
-  if (rows_.count() == 0) rows_.apply(tools, displacement_);
+  if (rows_.count() == 0) rows_.apply(tissue, candidates_, tools, displacement_);
   late_ = false;
   int built = 0;
   for (;; built = rows_.count()) {
@@ -409,27 +443,27 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
     const Status columns = rows_.require_columns(tissue);
     status |= columns;
     late_ = columns.has(StatusFlag::degraded_model);
-    rows_.build(tissue, candidates_.samples(), tools, floor_, built);
+    rows_.build(tissue, candidates_, tools, floor_, built);
     if (!rows_.solve(built)) status.set(StatusFlag::solver_not_converged);
-    rows_.apply(tools, displacement_);
+    rows_.apply(tissue, candidates_, tools, displacement_);
     if (iteration == 0 && built == 0) correct_normals(tissue, tools, status);
   }
   if (rows_.has_friction() && built > 0 && built == rows_.count()) {
     if (!rows_.slide()) status.set(StatusFlag::solver_not_converged);
-    rows_.apply(tools, displacement_);
+    rows_.apply(tissue, candidates_, tools, displacement_);
   }
 }
 
 /// Where normals at the solution differ so much from those of the linearisation that another one would follow: they are
-/// corrected at a fraction of its cost. Points that move on their facets need that other linearisation.
+/// corrected at a fraction of its cost.
 PALPATE_INLINE void ContactProblem::correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept {
   const double change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
-  if (rows_.has_moving() || first_change_safety * change <= parameters_.force_tolerance) return;
+  if (first_change_safety * change <= parameters_.force_tolerance) return;
   for (int k = 0; k < most_corrections; ++k) {
     const double estimate = estimate_safety * rows_.remaining_change(tools);
     if (estimate <= parameters_.force_tolerance || !(estimate <= largest_correction)) return;
-    if (!rows_.correct_normals(tissue, candidates_.samples(), tools)) status.set(StatusFlag::solver_not_converged);
-    rows_.apply(tools, displacement_);
+    if (!rows_.correct_normals(tissue, candidates_, tools)) status.set(StatusFlag::solver_not_converged);
+    rows_.apply(tissue, candidates_, tools, displacement_);
   }
 }
 
@@ -445,7 +479,8 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const ContactTool& tool = tools[at(c.tool)];
-    if (arrived_ && !candidates_.is_moving(c)) {
+    set_area(tool, c);
+    if (arrived_) {
       candidates_.place(c, c.point, tool);
     } else {
       if (!arrived_) c.history.known = 0;
@@ -478,38 +513,35 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
 /// rows press, those that pressed first keep theirs. `built` is zero when idle rows were dropped.
 PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools tools, int& built) noexcept {
   violated_count_ = 0;
-  shares_.begin_round();
+  levels_.begin_round();
   proxies_.look_ahead(tools, floor_);
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
   for (Candidate& c : candidates_.items()) {
-    if (c.row >= 0 || is_grasped(c)) continue;
+    if (c.row >= 0 || !may_have_row(c) || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     const double reach = ahead.farthest + 2.0 * rows_.longest_path();
     if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
-    if (!c.facing || c.gap > reach || rows_.has_same(candidates_, c, tool.radius)) continue;
+    if (!c.facing || c.gap > reach) continue;
     const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
     double gap = c.gap + c.normal.dot(ahead.path - moved);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!(gap < -allowed)) continue;
-    if (may_have_row(c))
-      violated_[at(violated_count_++)] = {gap, &c};
-    else
-      shares_.note_skipped(c.tool, -gap);
+    violated_[at(violated_count_++)] = {gap, &c};
   }
   std::array<int, maximum_tools> own = rows_.count_by_tool();
   std::array<int, maximum_tools> wanted = own;
   bool crowded = rows_.count() + std::min(violated_count_, added_per_round) > rows_.capacity();
   for (int i = 0; i < violated_count_; ++i)
     crowded =
-        ++wanted[at(violated_[at(i)].candidate->tool)] > shares_.share(violated_[at(i)].candidate->tool) || crowded;
-  if (crowded && violated_count_ > 0 && rows_.drop_idle()) {
+        ++wanted[at(violated_[at(i)].candidate->tool)] > levels_.share(violated_[at(i)].candidate->tool) || crowded;
+  if (crowded && violated_count_ > 0 && rows_.drop_idle(tissue, candidates_)) {
     built = 0;
     own = rows_.count_by_tool();
   }
   const auto end = std::partition(violated_.begin(), violated_.begin() + violated_count_, [&](const Violated& v) {
-    return own[at(v.candidate->tool)] < shares_.share(v.candidate->tool);
+    return own[at(v.candidate->tool)] < levels_.share(v.candidate->tool);
   });
   const auto fitting = static_cast<int>(end - violated_.begin());
   const int adding = std::min({fitting, added_per_round, rows_.capacity() - rows_.count()});
@@ -517,16 +549,16 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
                     [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
   for (int i = 0; i < adding; ++i) {
     Candidate& c = *violated_[at(i)].candidate;
-    if (own[at(c.tool)] >= shares_.share(c.tool)) continue;
-    if (rows_.has_same(candidates_, c, tools[at(c.tool)].radius)) continue;
+    if (own[at(c.tool)] >= levels_.share(c.tool)) continue;
     ++own[at(c.tool)];
-    rows_.inherit_friction(tissue.contact_surface(), candidates_, tools[at(c.tool)], c);
-    rows_.add(tissue.contact_surface(), candidates_, c);
+    set_area(tools[at(c.tool)], c);
+    rows_.inherit_friction(tools[at(c.tool)], c);
+    rows_.add(tissue, candidates_, c);
   }
   const bool full = rows_.count() == rows_.capacity();
   for (int i = 0; i < violated_count_; ++i) {
     const auto& [gap, c] = violated_[at(i)];
-    if (c->row < 0 && (full || own[at(c->tool)] >= shares_.share(c->tool))) shares_.note_left_out(c->tool, -gap);
+    if (c->row < 0 && (full || own[at(c->tool)] >= levels_.share(c->tool))) levels_.note_left_out(c->tool, -gap);
   }
 }
 
@@ -537,7 +569,7 @@ PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   if (part == 1.0)
     rows_.place_points();
   else
-    displacement_.blend(start_, part);
+    displacement_.blend(start_, part, candidates_.samples());
   candidates_.move_surface(2.0 * part * rows_.longest_path());
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) candidates_.move_sphere(t, tools[t]);

@@ -12,6 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class SubfacetCompliance;
+
 /// The isotropic material behind a triangle.
 struct ContactMaterial {
   double modulus = 0.0;        ///< contact modulus E / (1 - nu^2) [Pa]; 0 is unknown
@@ -69,6 +71,9 @@ class ContactSurface {
     return static_cast<std::size_t>(t) < materials_.size() ? materials_[static_cast<std::size_t>(t)]
                                                            : ContactMaterial{};
   }
+  /// Sets the compliance of points finer than facets; null: points have that of the mesh.
+  void set_subfacet(std::shared_ptr<const SubfacetCompliance> subfacet) noexcept { subfacet_ = std::move(subfacet); }
+  const std::shared_ptr<const SubfacetCompliance>& subfacet() const noexcept { return subfacet_; }
   /// Sets the errors that were measured on this surface; null: none were.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
@@ -160,6 +165,7 @@ class ContactSurface {
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
+  std::shared_ptr<const SubfacetCompliance> subfacet_;
   std::shared_ptr<const ForceAccuracy> accuracy_;
   LinearModelError model_error_;
   std::vector<KnownErrors> bodies_;            // of joined surfaces; empty for one of its own

@@ -36,7 +36,7 @@ struct MissingDepth {
 /// A vertex has the values of a place near it, at a force scaled by the modulus, with which the tissue at the place is
 /// pressed as deep. They are scaled by the length of its facets: where facets are long compared with the contact radius
 /// a they show nothing of the dent, where they are short the error is of second order, so the missing depth is taken
-/// proportional to h^2 / (h^2 + (2 a)^2). What LocalIndentation adds in a tick is not missing.
+/// proportional to h^2 / (h^2 + (2 a)^2).
 class ForceAccuracy {
  public:
   /// A vertex of the surface.

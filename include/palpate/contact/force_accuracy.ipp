@@ -90,7 +90,7 @@ PALPATE_INLINE ForceError ForceAccuracy::error(const ContactTool& tool, int numb
   const double at = force * tool.radius / radius_;                          // same contact radius
   const double contact = 4.0 * tool.radius * std::min(depth, tool.radius);  // square of its diameter
   const auto hidden = [&](double facet) { return facet * facet / (facet * facet + contact); };
-  double missing = -tool.local_compliance * force, doubt = 0.0;
+  double missing = 0.0, doubt = 0.0;
   for (std::size_t k = 0; k < 3 && loads.vertex[k] >= 0; ++k) {
     const Vertex& vertex = vertices_[static_cast<std::size_t>(loads.vertex[k])];
     const MissingDepth& place = places_[static_cast<std::size_t>(vertex.place)];

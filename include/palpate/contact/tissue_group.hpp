@@ -63,6 +63,7 @@ class TissueGroup : public StillTissue {
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
   double compliance_floor() const noexcept { return floor_; }
+  Matrix3 vertex_rotation(int v) const noexcept;
   const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
  private:
@@ -96,6 +97,7 @@ class TissueGroup : public StillTissue {
   /// Of all members, in the frame of the group; empty if it is not set for one of them.
   ContactSurface::Unloaded unloaded() const;
   void join_errors();
+  std::shared_ptr<const SubfacetCompliance> joined_subfacet() const;
   const Member& member_of(int vertex) const noexcept;
   std::span<const int> part_of(const Member& m, std::span<const int> vertices) noexcept;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }

@@ -1,6 +1,7 @@
 // Definitions of tissue_group.hpp.
 #pragma once
 
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -43,6 +44,7 @@ PALPATE_INLINE void TissueGroup::build() {
     surface_.set_unloaded(unloaded());
   }
   surface_.set_materials(materials());
+  surface_.set_subfacet(joined_subfacet());
   join_errors();
   own_.resize(moved_.size());
   add_shells();
@@ -83,6 +85,17 @@ PALPATE_INLINE std::vector<ContactMaterial> TissueGroup::materials() const {
       materials.push_back(m.tissue.has_contact_materials() ? own.material(t) : ContactMaterial{});
   }
   return materials;
+}
+
+/// Each body in its own frame; unknown for a member whose compliance is not that of its surface.
+PALPATE_INLINE std::shared_ptr<const SubfacetCompliance> TissueGroup::joined_subfacet() const {
+  std::vector<SubfacetCompliance::Body> bodies;
+  for (const Member& m : members_)
+    bodies.push_back(
+        {m.tissue.has_contact_materials() ? m.tissue.contact_surface().subfacet().get() : nullptr, m.count});
+  if (bodies.size() == 1 && bodies.front().own != nullptr) return members_.front().tissue.contact_surface().subfacet();
+  if (std::none_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.own != nullptr; })) return nullptr;
+  return std::make_shared<SubfacetCompliance>(bodies);
 }
 
 /// Nothing is known of a member whose compliance is not that of its surface. Allocates in the first call only.
@@ -168,6 +181,11 @@ PALPATE_INLINE Vector3 TissueGroup::displacement_of(int i, std::span<const Verte
   for (const VertexForce& f : forces)
     if (is_own(f)) u.noalias() += compliance(i, f.vertex) * f.force.in_model_axes();
   return u;
+}
+PALPATE_INLINE Matrix3 TissueGroup::vertex_rotation(int v) const noexcept {
+  const Member& m = member_of(v);
+  const Matrix3 own = m.tissue.vertex_rotation(v - m.first);
+  return m.in_place ? own : Matrix3(rotation_of(m.place) * own);
 }
 PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {
   const Member& m = member_of(j);

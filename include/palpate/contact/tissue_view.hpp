@@ -33,6 +33,7 @@ struct TissueFunctions {
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
   void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
   bool (*try_cut)(void*, const BladeSweep&) noexcept;
+  void (*vertex_rotation)(const void*, int, Matrix3&) noexcept;
   bool has_contact_materials;
   TissueClaim* (*claim)(void*) noexcept = nullptr;
   std::vector<std::string> (*notes)(const void*) = nullptr;
@@ -112,6 +113,7 @@ struct TissueCalls {
                       nullptr,
                       nullptr,
                       nullptr,
+                      nullptr,
                       !HasOutOfDateMaterials<T>};
     if constexpr (calls<decltype(hooked().prefetch(std::span<const int>{}))>)
       f.prefetch = [](void* t, std::span<const int> v) noexcept { of(t).prefetch(v); };
@@ -129,6 +131,8 @@ struct TissueCalls {
       };
     if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
+    if constexpr (calls<decltype(hooked().vertex_rotation(0))>)
+      f.vertex_rotation = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).vertex_rotation(v); };
     if constexpr (requires(T & t) { t.claim(); })
       f.claim = [](void* t) noexcept -> TissueClaim* { return &of(t).claim(); };
     if constexpr (requires(const T& t) { t.notes(); })
@@ -205,6 +209,17 @@ class TissueView {
     look();
   }
 
+  /// Whether the surface rotates relative to the positions of its SubfacetCompliance.
+  bool rotates() const noexcept { return functions_->vertex_rotation != nullptr; }
+  Matrix3 vertex_rotation(int v) const noexcept {
+    Matrix3 r;
+    if (!rotates()) return Matrix3::Identity();
+    functions_->vertex_rotation(tissue_, v, r);
+    return r;
+  }
+  /// The mean of those of a point's vertices.
+  Matrix3 rotation_at(const ContactSample& point) const noexcept;
+
   /// Null for a tissue that several servos may use.
   TissueClaim* claim() const noexcept { return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr; }
   /// What the set-up of the tissue reports, one sentence each. Allocates.
@@ -236,5 +251,13 @@ class TissueView {
   const detail::TissueFunctions* functions_;
   const ContactSurface* surface_;
 };
+
+inline Matrix3 TissueView::rotation_at(const ContactSample& point) const noexcept {
+  const Matrix3 first = vertex_rotation(point.vertices[0]);
+  Matrix3 mean = first;  // exact where all are equal
+  for (std::size_t a = 1; a < 3; ++a)
+    if (point.weights[a] > 0.0) mean += point.weights[a] * (vertex_rotation(point.vertices[a]) - first);
+  return mean;
+}
 
 }}  // namespace palpate

@@ -90,11 +90,6 @@ class HapticServo {
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
   /// tick's own thread.
   double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, contact_tools_[tool]); }
-  /// The part of it that facets longer than the tool do not show and that is estimated
-  /// (ContactParameters::local_compliance) [m]. For the tick's own thread.
-  double local_indentation(std::size_t tool = 0) const noexcept {
-    return contact_tools_[tool].local_compliance * contact_tools_[tool].force.norm();
-  }
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.

@@ -25,9 +25,9 @@ inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   }
   return radii;
 }
-/// The local compliance needs materials that belong to the tissue's compliance.
+/// The compliance of points finer than facets needs materials that belong to the tissue's compliance.
 inline ContactParameters contact_parameters(const TissueView& tissue, ContactParameters parameters) noexcept {
-  parameters.local_compliance = parameters.local_compliance && tissue.has_contact_materials();
+  parameters.subfacet_compliance = parameters.subfacet_compliance && tissue.has_contact_materials();
   return parameters;
 }
 /// A contact problem on the surface of a tissue, which is prepared for it. Also where all tools are blades: tissue that
@@ -149,7 +149,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 }
 
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].position());
+  return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].proxy);
 }
 PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
   return blades_[tool] ? blades_[tool]->force() : Vector3(rotation_of(tissue_.to_world()) * contact_tools_[tool].force);

@@ -16,7 +16,7 @@ struct NormalHistory {
 
 /// A contact point near the sphere of one tool, as of its last evaluation.
 struct Candidate {
-  int sample = 0;  ///< from the number of samples on: a point that moves, see Candidates
+  int sample = 0;
   int triangle = 0;
   int tool = 0;
   int row = -1;                      ///< of the contact problem, -1 when it has none
@@ -35,7 +35,7 @@ struct Candidate {
   Vector3 anchor = Vector3::Zero();    ///< stick anchor on the tool after the last tick, tool's own frame [m]
   std::uint64_t stuck_tick = 0;        ///< the tick after which it stuck
   bool grasped = false;                ///< a grasped point, not one found near a sphere
-  ContactSample moving{};              ///< where a point that moves is
+  double area = 0.0;                   ///< of the surface that the point stands for at present [m^2]
 
   /// Removes its force, friction and history.
   void lift() noexcept {

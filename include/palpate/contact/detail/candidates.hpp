@@ -4,7 +4,6 @@
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/detail/bvh.hpp>
 #include <palpate/contact/detail/candidate_list.hpp>
-#include <palpate/contact/detail/coarse_facets.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -15,27 +14,29 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// built in parts, so that no tick has all of that work; leaps have it at once. A point is evaluated again only when
 /// that path could have closed its gap. The search on the resting surface reaches as far as the surface has moved
 /// (SurfaceDisplacement::reach); where a tissue that moves knows how the surface is deformed, the search is on that
-/// surface (ExpectedSurface). On facets that are too long for a sphere and have a known modulus (CoarseFacets) the
-/// points are not those of the lattice, between which the sphere would sink, but one per facet and sphere: the closest
-/// to the sphere's centre. It moves along the facet whenever it is evaluated, its stick anchor with it. A scan over all
-/// vertices, a few per tick, finds what moved farther than the search reaches. No allocation; work bounded by `maximum`
-/// and, when the list is rebuilt at once, by the samples of all triangles in reach: each is evaluated.
+/// surface (ExpectedSurface). A list has the points of one level per tool and of all further levels; where a finer
+/// level is needed, the list is rebuilt. A scan over all vertices, a few per tick, finds what moved farther than the
+/// search reaches. No allocation; work bounded by `maximum` and, when the list is rebuilt at once, by the samples of
+/// all triangles in reach: each is evaluated.
 class Candidates {
  public:
-  /// Places the samples for spheres of these radii, `spacing` radii of the smallest apart; larger spheres use a level
-  /// of larger spacing. `capacity` is that of the contact problem. `local`: whether the moduli of the surface are
-  /// used. Allocates; for set-up.
-  Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing, int capacity, bool local);
+  /// Takes the samples of a surface. `capacity` is that of the contact problem. `subfacet`: null where points have only
+  /// the compliance of the mesh. Allocates; for set-up.
+  Candidates(ContactSamples samples, std::shared_ptr<const SubfacetCompliance> subfacet, int capacity);
 
   /// Largest number of points in the list.
   int maximum() const noexcept { return list_.points.maximum(); }
   const ContactSamples& samples() const noexcept { return samples_; }
-  const CoarseFacets& facets() const noexcept { return facets_; }
-  bool is_moving(const Candidate& c) const noexcept { return c.sample >= samples_.count(); }
+  /// Null where points have only the compliance of the mesh.
+  const SubfacetCompliance* subfacet() const noexcept { return subfacet_.get(); }
   /// The material point of a candidate.
-  const ContactSample& sample_of(const Candidate& c) const noexcept {
-    return is_moving(c) ? c.moving : samples_[c.sample];
+  const ContactSample& sample_of(const Candidate& c) const noexcept { return samples_[c.sample]; }
+  /// As a point of a half-space; unknown without a SubfacetCompliance.
+  HalfSpacePoint half_space_point(int sample) const noexcept {
+    return subfacet_ ? subfacet_->point(samples_[sample], samples_.normal(sample)) : HalfSpacePoint{};
   }
+  /// Sets the level from which on a tool has all points.
+  void set_level(std::size_t tool, int level) noexcept;
   std::span<Candidate> items() noexcept { return list_.points.items(); }
   bool has_any(int tool) const noexcept;
   void forget() noexcept { valid_ = false; }
@@ -104,18 +105,13 @@ class Candidates {
  private:
   static constexpr int per_tick = 2;
   static constexpr std::size_t least_room = 1024;  // points: a large tool on fine facets has many more near than rows
-  static constexpr double level_ratio = 1.5;       // of the spacing of a level to that of the level before
   static constexpr int not_begun = -1;             // Descent::top, before the search for a tool
   static constexpr double margin = 0.25;           // radii
   static constexpr double begin_used = 0.6, end_used = 0.8;  // parts of the margin while the next list is built
 
-  /// Moves a point that moves to the present closest point of its facet.
-  void project(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
-               Candidate& c) const noexcept;
   inline static const Vector3& expected_position(const ContactSurface& surface, int vertex) noexcept;
   inline static Vector3 expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept;
   inline static double needed(const ContactTool& tool) noexcept;
-  int level_of(const ContactTool& tool) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
@@ -125,6 +121,7 @@ class Candidates {
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
     double reach = 0.0;                                  // of the surface when the search began
     double surface_built = 0.0;                          // travel of the surface then
+    std::array<int, maximum_tools> level{};
   };
   /// A search for the points of a list, tool by tool.
   struct Search {
@@ -136,6 +133,7 @@ class Candidates {
     bool in_parts = false;  // one part per tick, while the present list is valid
   };
   double used(const List& list, std::span<const ContactTool> tools) const noexcept;
+  bool has_levels(const List& list) const noexcept;
   void begin(Search& search, List& list, int room) const noexcept;
   bool advance(const TissueView& tissue, std::span<const ContactTool> tools, Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;
@@ -150,9 +148,8 @@ class Candidates {
   void consider(const TissueView& tissue, const ContactTool& tool, Candidate& c, const Search& search, List& list,
                 SurfaceDisplacement& displacement) noexcept;
 
-  double smallest_radius_;
   ContactSamples samples_;
-  CoarseFacets facets_;
+  std::shared_ptr<const SubfacetCompliance> subfacet_;
   List list_, next_list_;
   Search search_;                  // for the next list, or for one that is built at once
   int leaves_ = 0;                 // visited for the list
@@ -163,6 +160,7 @@ class Candidates {
   std::array<Vector3, maximum_tools> proxy_;
   std::array<Matrix3, maximum_tools> rotation_;
   std::array<bool, maximum_tools> was_active_{};
+  std::array<int, maximum_tools> level_{};
   std::array<double, maximum_tools> travel_{};
   double surface_travel_ = 0.0;
   /// Largest distances of vertices that the scan found outside the reach.

@@ -15,18 +15,13 @@ inline bool has_vertex(const Triangle& t, int vertex) noexcept {
 
 }  // namespace detail
 
-PALPATE_INLINE Candidates::Candidates(const ContactSurface& surface, const ToolRadii& radii, double spacing,
-                                      int capacity, bool local)
-    : smallest_radius_(radii.smallest),
-      samples_(surface, spacing * radii.smallest),
-      facets_(surface, local),
+PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<const SubfacetCompliance> subfacet,
+                                      int capacity)
+    : samples_(std::move(samples)),
+      subfacet_(std::move(subfacet)),
       list_{CandidateList(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room))},
       next_list_{list_.points},
       loaded_(static_cast<std::size_t>(capacity)) {
-  // From the longest edge on all levels would be equal: vertices only.
-  const double most =
-      (1.0 + ContactSamples::rounding) * std::min(radii.largest, longest_edge(surface) / spacing * level_ratio);
-  for (double r = level_ratio * radii.smallest; r <= most; r *= level_ratio) samples_.add_level(surface, spacing * r);
   reset();
 }
 
@@ -43,6 +38,8 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   proxy_.fill(Vector3::Zero());
   rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
+  level_.fill(0);
+  list_.level.fill(0);
   travel_.fill(0.0);
   surface_travel_ = 0.0;
   far_ = far_last_round_ = {};
@@ -83,7 +80,7 @@ PALPATE_INLINE bool Candidates::has_any(int tool) const noexcept {
 
 PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
   std::swap(samples_, fresh.samples_);
-  std::swap(facets_, fresh.facets_);
+  std::swap(subfacet_, fresh.subfacet_);
   store_loaded();
   list_.points.clear();
   for (int i = 0; i < loaded_count_; ++i) {
@@ -104,9 +101,7 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
 
 PALPATE_INLINE bool Candidates::move(Candidate& c, const ContactSamples& before,
                                      const ContactSurface& surface) const noexcept {
-  const bool moves = c.sample >= before.count();
-  const int level = moves ? 0 : std::min(before.level_of(c.sample), samples_.levels() - 1);
-  c.sample = samples_.nearest(surface, moves ? c.moving : before[c.sample], level);
+  c.sample = samples_.nearest(surface, before[c.sample], std::min(before.level_of(c.sample), samples_.levels() - 1));
   if (c.sample < 0) return false;
   c.triangle = triangle_of(surface, c.sample);
   c.row = c.slot = -1;
@@ -135,6 +130,11 @@ PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& to
 PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
                                             const Candidate& c) const noexcept {
   const ContactSample& sample = sample_of(c);
+  if (subfacet_) {
+    if (const HalfSpacePoint point = half_space_point(c.sample); point.is_known())
+      return rest(tissue.contact_surface(), sample) +
+             displacement.at_point(tissue, *subfacet_, sample, point, c.sample);
+  }
   Vector3 point = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
@@ -143,19 +143,13 @@ PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDis
 
 PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,
                                          SurfaceDisplacement& displacement, Candidate& c) noexcept {
-  if (is_moving(c) && !c.grasped) project(tissue, tool, displacement, c);
   place(c, position(tissue, displacement, c), tool);
   c.facing = faces_sphere(tissue, displacement, c);
 }
 
-PALPATE_INLINE void Candidates::project(const TissueView& tissue, const ContactTool& tool,
-                                        SurfaceDisplacement& displacement, Candidate& c) const noexcept {
-  const ContactSurface& surface = tissue.contact_surface();
-  const ContactSample before = c.moving;
-  c.moving.vertices = surface.triangle(c.triangle);
-  const auto corner = [&](std::size_t a) { return displacement.position(tissue, c.moving.vertices[a]); };
-  c.moving.weights = closest_point(tool.proxy, corner(0), corner(1), corner(2)).weights;
-  if (c.stuck_tick != 0) c.anchor += tool.rotation.transpose() * (rest(surface, c.moving) - rest(surface, before));
+PALPATE_INLINE void Candidates::set_level(std::size_t tool, int level) noexcept {
+  level_[tool] = level;
+  if (level < list_.level[tool]) valid_ = false;
 }
 
 PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<const ContactTool> tools,
@@ -180,9 +174,8 @@ PALPATE_INLINE void Candidates::look_round(const TissueView& tissue, std::span<c
 }
 
 PALPATE_INLINE int Candidates::triangle_of(const ContactSurface& surface, int sample) const noexcept {
-  const int level = samples_.level_of(sample);
   for (const int t : surface.triangles_at(samples_[sample].vertices[0]))
-    if (samples_.first_of(t, level) <= sample && sample < samples_.first_of(t + 1, level)) return t;
+    if (samples_.first_of(t) <= sample && sample < samples_.first_of(t + 1)) return t;
   return 0;
 }
 

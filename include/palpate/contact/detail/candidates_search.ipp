@@ -25,12 +25,19 @@ PALPATE_INLINE double Candidates::used(const List& list, std::span<const Contact
   return most;
 }
 
+/// Whether a list has all points of the present levels.
+PALPATE_INLINE bool Candidates::has_levels(const List& list) const noexcept {
+  for (std::size_t t = 0; t < maximum_tools; ++t)
+    if (level_[t] < list.level[t]) return false;
+  return true;
+}
+
 PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<const ContactTool> tools,
                                          SurfaceDisplacement& displacement) noexcept {
   Status status;
   is_new_ = false;
   if (!valid_ || used(list_, tools) > 1.0) {
-    if (valid_ && search_.ends && used(next_list_, tools) <= 1.0)
+    if (valid_ && search_.ends && used(next_list_, tools) <= 1.0 && has_levels(next_list_))
       take_next();
     else
       build(tissue, tools, displacement);
@@ -125,6 +132,7 @@ PALPATE_INLINE void Candidates::begin(Search& search, List& list, int room) cons
   list.kept = 0;
   list.room = room;
   list.surface_built = surface_travel_;
+  list.level = level_;
 }
 
 /// Searches the next leaf; false when none is left. The surface and the spheres may move between two calls: what is
@@ -151,15 +159,6 @@ PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<cons
   return false;
 }
 
-/// The level whose spacing fits a tool.
-PALPATE_INLINE int Candidates::level_of(const ContactTool& tool) const noexcept {
-  int level = 0;
-  const double radius = (1.0 + ContactSamples::rounding) * tool.radius;
-  for (double r = level_ratio * smallest_radius_; r <= radius && level + 1 < samples_.levels(); r *= level_ratio)
-    ++level;
-  return level;
-}
-
 /// Adds the points of a triangle that are near a tool. Their gaps are lower bounds: the surface is within the reach of
 /// the search from where it is expected.
 PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactTool& tool, int triangle,
@@ -173,21 +172,15 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
   Candidate c;
   c.triangle = triangle;
   c.tool = static_cast<int>(search.tool);
-  if (facets_.is_local(tool, surface.triangle(triangle))) {
-    c.sample = samples_.count() + c.tool * static_cast<int>(surface.triangles().size()) + triangle;
-    project(tissue, tool, displacement, c);
-    c.gap = std::sqrt(squared_distance(c.moving)) - touching;
-    if (c.gap <= list.range[search.tool]) consider(tissue, tool, c, search, list, displacement);
-    return;
-  }
-  const int level = level_of(tool);
-  const int first = samples_.first_of(triangle, level), end = samples_.first_of(triangle + 1, level);
+  const int level = list.level[search.tool];
+  const int first = samples_.first_of(triangle), end = samples_.first_of(triangle + 1);
+  if (first == end || samples_.level_of(first) < level) return;
   if (end - first > 8) {  // in a leaf whose other triangles are near
     Box box;
     for (const int v : surface.triangle(triangle)) box.include(expected_position(surface, v));
     if (box.squared_distance(tool.middle()) > near * near) return;
   }
-  for (int sample = first; sample < end; ++sample) {
+  for (int sample = first; sample < end && samples_.level_of(sample) >= level; ++sample) {
     const double squared = squared_distance(samples_[sample]);
     if (!(squared <= near * near)) continue;
     c.sample = sample;
@@ -213,7 +206,7 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   const double known = search.in_parts ? known_gap(c.tool, c.sample) : -infinity;
   const bool far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && points.count() < list.room;
   c.gap = std::max(c.gap, known);
-  c.evaluated = is_moving(c) || !(far || known > -infinity);
+  c.evaluated = !(far || known > -infinity);
   if (c.evaluated)
     place(c, position(tissue, displacement, c), tool);
   else

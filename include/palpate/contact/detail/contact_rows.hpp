@@ -39,26 +39,23 @@ class ContactRows {
   std::array<int, maximum_tools> count_pressing() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
   const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
-  /// Whether a point moves on its facet.
-  bool has_moving() const noexcept { return has_moving_; }
-  /// Whether a row is at the place of a candidate that moves: two facets have their closest points on a common edge.
-  bool has_same(const Candidates& candidates, const Candidate& c, double radius) const noexcept;
+  /// The area that the rows with force of every tool stand for [m^2].
+  std::array<double, maximum_tools> pressing_area() const noexcept;
 
   /// Before a point is added: its slip counts from where the tool stuck or slipped to in the last tick, as that of the
   /// nearest point that pressed then. Otherwise a tool that passes from point to point would slide without friction in
-  /// the ticks between. A point that moves continues the friction of the facet from which the tool comes.
-  void inherit_friction(const ContactSurface& surface, const Candidates& candidates, const ContactTool& tool,
-                        Candidate& c) const noexcept;
+  /// the ticks between.
+  void inherit_friction(const ContactTool& tool, Candidate& c) const noexcept;
   /// The caller guarantees that there is room.
-  void add(const ContactSurface& surface, const Candidates& candidates, Candidate& c) noexcept;
+  void add(const TissueView& tissue, const Candidates& candidates, Candidate& c) noexcept;
   /// Drops rows without force to make room; W must then be rebuilt. False when all rows have force.
-  bool drop_idle() noexcept;
+  bool drop_idle(const TissueView& tissue, const Candidates& candidates) noexcept;
   /// Requests the compliance columns of all vertices that carry rows.
   Status require_columns(const TissueView& tissue) noexcept;
 
   /// Rows `first` and later of W = J C J^T plus the coupling and `floor` [m/N], and of b = gap at the target without
   /// contact force.
-  void build(const TissueView& tissue, const ContactSamples& samples, std::span<const ContactTool> tools, double floor,
+  void build(const TissueView& tissue, const Candidates& points, std::span<const ContactTool> tools, double floor,
              int first) noexcept;
   /// Solves for the normal forces with the present friction forces, after `build` from row `first`. False when the
   /// iteration was stopped early.
@@ -84,7 +81,8 @@ class ContactRows {
   double deepest_push() const noexcept;
 
   /// Writes the solution to rows, vertices and tools. Candidates get their forces; they stay where they are.
-  void apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept;
+  void apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,
+             SurfaceDisplacement& displacement) noexcept;
   /// The longest displacement of a row's point from where its candidate is to the solution [m].
   double longest_path() const noexcept { return longest_path_; }
   /// Moves the candidates of the rows to the solution.
@@ -97,8 +95,7 @@ class ContactRows {
   /// A step from the solution with the same W, as in a chord method, after `remaining_change`, where that is finite:
   /// forces act along the normals at the solution, and gaps are distances there. `apply` must follow. False when the
   /// iteration was stopped early. No allocation; O(rows^2).
-  bool correct_normals(const TissueView& tissue, const ContactSamples& samples,
-                       std::span<const ContactTool> tools) noexcept;
+  bool correct_normals(const TissueView& tissue, const Candidates& points, std::span<const ContactTool> tools) noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor.
   void stick(std::span<const ContactTool> tools) noexcept;
@@ -110,9 +107,8 @@ class ContactRows {
   static constexpr double alternation_tolerance = 1e-5;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
-  inline static bool takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
-  void build_friction(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool, int i) noexcept;
+  void build_friction(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
   inline static Matrix3 rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
                                               const Vector3& by_arm) noexcept;
   inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
@@ -120,11 +116,14 @@ class ContactRows {
   double estimate_change(std::span<const ContactTool> tools) noexcept;
   inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
                                      double* of_m) noexcept;
-  inline void build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
-                        int i) noexcept;
+  inline void build_row(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
+  /// Displacement of the point in a row per force on that in another, whose slot is not larger [m/N]. `workspace`: for
+  /// two rows at one point.
+  inline const Matrix3& between(const TissueView& tissue, const Candidates& points, int i, int j,
+                                Matrix3& workspace) noexcept;
   inline void update_gaps() noexcept;
   inline Vector3 moved_point(int i, int pressing) const noexcept;
-  inline Vector3 redirected_displacement(const TissueView& tissue, const ContactSamples& samples, int i) noexcept;
+  inline Vector3 redirected_displacement(const TissueView& tissue, const Candidates& points, int i) noexcept;
 
   /// Displacement of the point of row i per unit force on that of row j.
   Vector3& response(int i, int j) noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
@@ -146,7 +145,6 @@ class ContactRows {
   std::array<Vector3, maximum_tools> redirected_of_tool_{};
   std::array<double, maximum_tools> pressing_force_{};
   double remaining_change_ = -1.0;  // negative: not known
-  bool has_moving_ = false;
   std::vector<int> vertices_;
   std::vector<int> slot_;  // scratch per vertex: -1 between calls
 };

@@ -54,12 +54,26 @@ inline double ContactRows::set_responses(const double* c, const double* m, const
   return m[0] * x + m[1] * y + m[2] * z;
 }
 
+inline const Matrix3& ContactRows::between(const TissueView& tissue, const Candidates& points, int i, int j,
+                                           Matrix3& workspace) noexcept {
+  const Candidate &c = *candidate_[at(i)], &other = *candidate_[at(j)];
+  const Matrix3& compliance = compliance_(tissue, points, c.slot, other.slot);
+  if (c.slot != other.slot || !compliance_.half_space_point(c.slot).is_known()) return compliance;
+  const double area = i == j ? c.area : std::sqrt(c.area * other.area);
+  const Matrix3& rotation = compliance_.rotation(c.slot);
+  workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
+  if (tissue.rotates()) workspace = (rotation * workspace * rotation.transpose()).eval();
+  workspace += compliance;
+  return workspace;
+}
+
 /// Row i of W and the responses that belong to it.
-inline void ContactRows::build_row(const TissueView& tissue, const ContactSamples& samples, const ContactTool& tool,
+inline void ContactRows::build_row(const TissueView& tissue, const Candidates& points, const ContactTool& tool,
                                    int i) noexcept {
   const Contact& ci = rows_[at(i)];
   const int p = candidate_[at(i)]->slot;
   const bool rotates = tool.rotational_compliance > 0.0;
+  Matrix3 same;
   const double* const m = ci.normal.data();
   double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
   Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
@@ -68,9 +82,9 @@ inline void ContactRows::build_row(const TissueView& tissue, const ContactSample
     const Contact& cj = rows_[at(j)];
     const int q = candidate_[at(j)]->slot;
     const double* const n = cj.normal.data();
-    double w = p >= q ? set_responses(compliance_(tissue, samples, p, q).data(), m, n, on_j->data(), on_i->data())
-                      : set_responses(compliance_(tissue, samples, q, p).data(), n, m, on_i->data(), on_j->data());
-    if (ci.tool == cj.tool) w += (tool.total_compliance() + floor_) * ci.normal.dot(cj.normal);
+    double w = p >= q ? set_responses(between(tissue, points, i, j, same).data(), m, n, on_j->data(), on_i->data())
+                      : set_responses(between(tissue, points, j, i, same).data(), n, m, on_i->data(), on_j->data());
+    if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
     if (rotates && ci.tool == cj.tool)
       w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
     column[j] = *row = w;
@@ -84,7 +98,6 @@ PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) n
 
 PALPATE_INLINE void ContactRows::clear() noexcept {
   count_ = 0;
-  has_moving_ = false;
   longest_path_ = alternation_change_ = 0.0;
   compliance_.begin_rows();
 }
@@ -102,22 +115,17 @@ PALPATE_INLINE void ContactRows::move_to(ContactRows& fresh) noexcept {
   slot_.swap(fresh.slot_);
 }
 
-PALPATE_INLINE void ContactRows::add(const ContactSurface& surface, const Candidates& candidates,
-                                     Candidate& c) noexcept {
+PALPATE_INLINE void ContactRows::add(const TissueView& tissue, const Candidates& candidates, Candidate& c) noexcept {
   c.row = count_;
-  c.slot = compliance_.slot_of(c.sample, c.slot);
+  c.slot = compliance_.slot_of(tissue, candidates, c.sample, c.slot);
   const ContactSample& sample = candidates.sample_of(c);
-  if (candidates.is_moving(c)) {
-    compliance_.move(c.slot, sample);
-    has_moving_ = true;
-  }
   candidate_[at(count_)] = &c;
   Contact& row = rows_[at(count_++)];
   row.tool = c.tool;
   row.vertices = sample.vertices;
   row.weights = sample.weights;
   row.normal = c.normal;
-  row.rest = candidates.rest(surface, sample);
+  row.rest = candidates.rest(tissue.contact_surface(), sample);
   row.point = c.point;
   row.force = c.force;
   row.friction = c.friction;
@@ -136,7 +144,14 @@ PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_pressing() cons
   return counts;
 }
 
-PALPATE_INLINE bool ContactRows::drop_idle() noexcept {
+PALPATE_INLINE std::array<double, maximum_tools> ContactRows::pressing_area() const noexcept {
+  std::array<double, maximum_tools> areas{};
+  for (int i = 0; i < count_; ++i)
+    if (rows_[at(i)].force > 0.0 && !rows_[at(i)].grasped) areas[at(rows_[at(i)].tool)] += candidate_[at(i)]->area;
+  return areas;
+}
+
+PALPATE_INLINE bool ContactRows::drop_idle(const TissueView& tissue, const Candidates& candidates) noexcept {
   const auto works = [this](int i) { return rows_[at(i)].force > 0.0 || candidate_[at(i)]->grasped; };
   int kept = 0;
   while (kept < count_ && works(kept)) ++kept;
@@ -147,7 +162,7 @@ PALPATE_INLINE bool ContactRows::drop_idle() noexcept {
     Candidate& c = *candidate_[at(i)];
     c.row = works(i) ? kept : -1;
     if (c.row < 0) continue;
-    c.slot = compliance_.slot_of(c.sample, c.slot);
+    c.slot = compliance_.slot_of(tissue, candidates, c.sample, c.slot);
     candidate_[at(kept)] = &c;
     rows_[at(kept++)] = rows_[at(i)];
   }
@@ -168,7 +183,7 @@ PALPATE_INLINE Status ContactRows::require_columns(const TissueView& tissue) noe
   return tissue.require_columns({vertices_.data(), at(count)});
 }
 
-PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSamples& samples,
+PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const Candidates& points,
                                        std::span<const ContactTool> tools, double floor, int first) noexcept {
   floor_ = floor;
   problem_.resize(count_);
@@ -180,8 +195,8 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const ContactSa
     problem_.bilateral[at(i)] = ci.grasped;
     reach(tool, *candidate_[at(i)], ci);
     problem_.b[at(i)] = free_gap_[at(i)] = ci.normal.dot(tool.target - ci.rest) + ci.offset;
-    build_row(tissue, samples, tool, i);
-    if (friction_.acts()) build_friction(tissue, samples, tool, i);
+    build_row(tissue, points, tool, i);
+    if (friction_.acts()) build_friction(tissue, points, tool, i);
   }
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) pressed_[at(i)] = candidate_[at(i)]->force;
@@ -230,7 +245,8 @@ inline Vector3 ContactRows::moved_point(int i, int pressing) const noexcept {
   return rows_[at(i)].rest - shift_[at(i)] - Vector3(even[0] + odd[0], even[1] + odd[1], even[2] + odd[2]);
 }
 
-PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisplacement& displacement) noexcept {
+PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,
+                                       SurfaceDisplacement& displacement) noexcept {
   displacement.clear();
   pressing_force_.fill(0.0);
   for (ContactTool& tool : tools) {
@@ -258,6 +274,11 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
     tool.torque += cross(row.arm, total);
     for (std::size_t a = 0; a < 3; ++a)
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
+    if (const HalfSpacePoint& point = compliance_.half_space_point(c.slot); point.is_known()) {
+      const Vector3 at_rest = tissue.rotates() ? Vector3(compliance_.rotation(c.slot).transpose() * total) : total;
+      displacement.add_load({c.sample, point, c.area, (row.point - row.rest).norm(), -at_rest},
+                            points.samples()[c.sample]);
+    }
   }
   for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;
   longest_path_ = std::sqrt(longest);
@@ -266,19 +287,6 @@ PALPATE_INLINE void ContactRows::apply(std::span<ContactTool> tools, SurfaceDisp
 
 PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
-}
-
-PALPATE_INLINE bool ContactRows::has_same(const Candidates& candidates, const Candidate& c,
-                                          double radius) const noexcept {
-  constexpr double near = 1e-4;  // radii; closer points are the same, on a common edge or vertex
-  if (!candidates.is_moving(c)) return false;
-  for (int i = 0; i < count_; ++i) {
-    const Candidate& other = *candidate_[at(i)];
-    if (other.tool == c.tool && candidates.is_moving(other) && !other.grasped &&
-        (other.point - c.point).squaredNorm() < near * near * radius * radius && other.normal.dot(c.normal) > 0.0)
-      return true;
-  }
-  return false;
 }
 
 }}  // namespace palpate

@@ -14,26 +14,12 @@ inline bool ContactRows::sticks(const Candidate& c) const noexcept {
   return c.stuck_tick != 0 && c.stuck_tick + 1 == tick_;
 }
 
-/// Whether a point that moves continues another on the next facet: it takes the friction force too.
-inline bool ContactRows::takes_over(const Candidates& candidates, const Candidate& other, const Candidate& c) noexcept {
-  constexpr double same_direction = 0.98;
-  return candidates.is_moving(c) && candidates.is_moving(other) && other.normal.dot(c.normal) >= same_direction;
-}
-
-PALPATE_INLINE void ContactRows::inherit_friction(const ContactSurface& surface, const Candidates& candidates,
-                                                  const ContactTool& tool, Candidate& c) const noexcept {
+PALPATE_INLINE void ContactRows::inherit_friction(const ContactTool& tool, Candidate& c) const noexcept {
   if (!friction_.acts() || sticks(c)) return;
   const Candidate* nearest = nullptr;
   for (int i = 0; i < count_; ++i) {
     const Candidate& other = *candidate_[at(i)];
     if (other.tool != c.tool || other.grasped || !sticks(other)) continue;
-    if (takes_over(candidates, other, c)) {
-      const Vector3 path = candidates.rest(surface, c.moving) - candidates.rest(surface, other.moving);
-      c.anchor = other.anchor + tool.rotation.transpose() * path;
-      c.friction = other.friction;
-      c.stuck_tick = other.stuck_tick;
-      return;
-    }
     if (nearest == nullptr || (other.point - c.point).squaredNorm() < (nearest->point - c.point).squaredNorm())
       nearest = &other;
   }
@@ -60,26 +46,27 @@ inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const
 }
 
 /// Row i of the input of CoulombFriction.
-PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const ContactSamples& samples,
+PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const Candidates& points,
                                                 const ContactTool& tool, int i) noexcept {
   const Candidate& c = *candidate_[at(i)];
   const Contact& ci = rows_[at(i)];
   const bool rotates = tool.rotational_compliance > 0.0;
-  const double compliance = tool.total_compliance() + floor_;
+  const double coupling = tool.compliance + floor_;
   const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
   friction_.set(i, ci.normal, drift, c.friction, !c.grasped && sticks(c));
   for (int j = 0; j <= i; ++j) {
     const Contact& cj = rows_[at(j)];
     const bool same = ci.tool == cj.tool;
     const int p = c.slot, q = candidate_[at(j)]->slot;
-    const Matrix3* between = p >= q ? &compliance_(tissue, samples, p, q) : &compliance_(tissue, samples, q, p);
-    Matrix3 sum;
+    Matrix3 workspace, sum;
+    const Matrix3* compliance =
+        p >= q ? &between(tissue, points, i, j, workspace) : &between(tissue, points, j, i, workspace);
     if (same && rotates) {
-      sum = *between +
+      sum = *compliance +
             (p >= q ? rotational_compliance(tool, ci.arm, cj.arm) : rotational_compliance(tool, cj.arm, ci.arm));
-      between = &sum;
+      compliance = &sum;
     }
-    friction_.set(p >= q ? i : j, p >= q ? j : i, *between, same ? compliance : 0.0);
+    friction_.set(p >= q ? i : j, p >= q ? j : i, *compliance, same ? coupling : 0.0);
   }
 }
 
@@ -121,7 +108,7 @@ PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) co
     const Contact& row = rows_[at(j)];
     ContactTool& tool = tools[at(row.tool)];
     const Vector3 friction = friction_.force(j);
-    tool.friction_displacement += (tool.total_compliance() + floor_) * friction;
+    tool.friction_displacement += (tool.compliance + floor_) * friction;
     tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction);
   }
 }

@@ -37,32 +37,32 @@ PALPATE_INLINE double ContactRows::estimate_change(std::span<const ContactTool> 
 }
 
 /// The displacement of the point of row i by the redirected parts of the forces.
-inline Vector3 ContactRows::redirected_displacement(const TissueView& tissue, const ContactSamples& samples,
+inline Vector3 ContactRows::redirected_displacement(const TissueView& tissue, const Candidates& points,
                                                     int i) noexcept {
   Vector3 displacement = Vector3::Zero();
+  Matrix3 workspace;
   const int p = candidate_[at(i)]->slot;
   for (int j = 0; j < count_; ++j) {
     if (rows_[at(j)].force == 0.0) continue;
-    const int q = candidate_[at(j)]->slot;
-    if (p >= q)
-      displacement.noalias() += compliance_(tissue, samples, p, q) * redirected_[at(j)];
+    if (p >= candidate_[at(j)]->slot)
+      displacement.noalias() += between(tissue, points, i, j, workspace) * redirected_[at(j)];
     else
-      displacement.noalias() += compliance_(tissue, samples, q, p).transpose() * redirected_[at(j)];
+      displacement.noalias() += between(tissue, points, j, i, workspace).transpose() * redirected_[at(j)];
   }
   return displacement;
 }
 
 /// The redirected forces move points and proxies, which rotates the normals further. The ratio of the two rotations,
 /// averaged over the rows, extrapolates the normals to their fixed point.
-PALPATE_INLINE bool ContactRows::correct_normals(const TissueView& tissue, const ContactSamples& samples,
+PALPATE_INLINE bool ContactRows::correct_normals(const TissueView& tissue, const Candidates& points,
                                                  std::span<const ContactTool> tools) noexcept {
   const auto relative_path = [&](const ContactTool& tool, int i) -> Vector3 {
-    return (tool.total_compliance() + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + redirected_path_[at(i)];
+    return (tool.compliance + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + redirected_path_[at(i)];
   };
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < count_; ++i) {
     const ContactTool& tool = tools[at(rows_[at(i)].tool)];
-    redirected_path_[at(i)] = redirected_displacement(tissue, samples, i);
+    redirected_path_[at(i)] = redirected_displacement(tissue, points, i);
     if (rows_[at(i)].force == 0.0) continue;
     back += redirected_[at(i)].dot(relative_path(tool, i)) / tool.radius;
     changed += redirected_[at(i)].squaredNorm() / rows_[at(i)].force;

@@ -3,6 +3,8 @@
 
 #include <palpate/contact/contact_surface.hpp>
 
+#include <cmath>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A material point of the contact surface: three vertices, and the weights that interpolate their displacement and
@@ -12,60 +14,65 @@ struct ContactSample {
   std::array<double, 3> weights{};
 };
 
-/// Points spread over all triangles so that no two neighbours are further apart than `spacing`, as far as
-/// `maximum_subdivision` allows: all vertices, and a barycentric lattice on longer edges and faces. They are fixed in
-/// the material, so that a sphere sliding over them encounters a smooth sequence of constraints. Every sample belongs
-/// to one triangle. Tools of different size use levels of different spacing; samples are numbered through all levels.
+/// Points spread over all triangles, fixed in the material: all vertices, and a barycentric lattice on longer edges and
+/// faces. Every sample belongs to one triangle.
+///
+/// Level 0 has all of them. Each further level has some of the level before, evenly spread, with a spacing that is
+/// sqrt(2) as large. Every point stands for a part of the surface: that of the points of level 0 that are nearest to it
+/// (Voronoi 1908). Between two levels the areas are interpolated, so that points fade in and out. A number of points
+/// can thus be chosen for a contact of any size on a mesh of any fineness.
 class ContactSamples {
  public:
   ContactSamples() = default;
 
-  /// Largest number of parts of an edge: limits the lattice on very coarse triangles, and with it the work of a tick.
+  /// Largest number of parts of an edge: limits the lattice on very coarse triangles.
   static constexpr int maximum_subdivision = 32;
   /// Lengths and radii that differ by less, relatively, count as equal.
   static constexpr double rounding = 1e-6;
 
-  /// One level. Allocates; for set-up.
-  ContactSamples(const ContactSurface& surface, double spacing);
+  /// Neighbours of level 0 are at most `finest` [m] apart, as far as `maximum_subdivision` allows; there are levels up
+  /// to a spacing of about `coarsest` [m]. Allocates; for set-up. O(samples x levels).
+  ContactSamples(const ContactSurface& surface, double finest, double coarsest);
 
-  /// Adds a level of larger spacing [m] with the next number. Allocates; for set-up.
-  void add_level(const ContactSurface& surface, double spacing);
-  int levels() const noexcept { return static_cast<int>(first_.size()); }
-  int level_of(int sample) const noexcept;
-
-  /// Fewer points: those whose `density` is below a bound [1/m^2] are spread evenly over the surface, about that many
-  /// per area, or all where there are fewer.
-  double density(int sample) const noexcept { return density_[static_cast<std::size_t>(sample)]; }
-  /// An upper bound of all densities.
-  double densest() const noexcept { return densest_; }
-
-  /// The samples that belong to a triangle.
-  std::span<const ContactSample> of_triangle(int t, int level = 0) const noexcept {
-    return {samples_.data() + first_of(t, level),
-            static_cast<std::size_t>(first_of(t + 1, level) - first_of(t, level))};
-  }
   int count() const noexcept { return static_cast<int>(samples_.size()); }
-  const ContactSample& operator[](int sample) const noexcept { return samples_[static_cast<std::size_t>(sample)]; }
+  const ContactSample& operator[](int sample) const noexcept { return samples_[at(sample)]; }
+  /// At least one.
+  int levels() const noexcept { return levels_; }
+  /// The last level that has a sample.
+  int level_of(int sample) const noexcept { return level_[at(sample)]; }
+  /// The level with about this spacing [m], not rounded; 0 to the last one.
+  double level_with(double spacing) const noexcept;
+  /// The spacing of a level [m]: of points on a plane, if each stands for the area of a hexagon.
+  double spacing(double level) const noexcept { return finest_ * std::pow(2.0, 0.5 * level); }
+  /// Area that a sample stands for at a level, also between two levels [m^2]; 0 where it has faded out.
+  double area(int sample, double level) const noexcept;
+  /// Outward normal at a sample: the mean of those of the triangles around it, weighted by their areas; unit.
+  Vector3 normal(int sample) const noexcept { return normal_[at(sample)].cast<double>(); }
+
+  /// The samples that belong to a triangle, those of the last level first.
+  std::span<const ContactSample> of_triangle(int t) const noexcept {
+    return {samples_.data() + first_of(t), static_cast<std::size_t>(first_of(t + 1) - first_of(t))};
+  }
+  /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
+  int first_of(int t) const noexcept { return first_[at(t)]; }
   /// The sample of a level nearest to a sample of another surface whose vertices have the same numbers; -1 when its
   /// triangles no longer exist. Checks the triangles around a vertex; no allocation.
   int nearest(const ContactSurface& surface, const ContactSample& wanted, int level = 0) const noexcept;
-  /// The first sample at a vertex; -1 at a vertex without triangles. Checks the triangles around it; no allocation.
+  /// The sample at a vertex; -1 at a vertex without triangles. Checks the triangles around it; no allocation.
   int of_vertex(const ContactSurface& surface, int vertex) const noexcept;
-  /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
-  int first_of(int t, int level = 0) const noexcept {
-    return first_[static_cast<std::size_t>(level)][static_cast<std::size_t>(t)];
-  }
 
  private:
-  void add_triangle(const ContactSurface& surface, int number, double spacing, std::vector<bool>& vertex_taken);
-  void add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing);
+  class Builder;  // what is needed only until the levels are known
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
-  void rank_level(const ContactSurface& surface, int first);
-
+  double finest_ = 0.0;
+  int levels_ = 1;
   std::vector<ContactSample> samples_;
-  std::vector<float> density_;
-  double densest_ = 0.0;
-  std::vector<std::vector<int>> first_;  // of every level; per triangle, one past the end last
+  std::vector<Eigen::Vector3f> normal_;
+  std::vector<std::uint8_t> level_;
+  std::vector<int> first_area_;  // of every sample: its areas at levels 0 to its last one
+  std::vector<float> area_;
+  std::vector<int> first_;  // per triangle, one past the end last
 };
 
 /// Length of the longest edge of a surface [m].

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <palpate/contact/detail/contact_samples.hpp>
-#include <palpate/core/detail/box.hpp>
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -29,42 +32,6 @@ inline int subdivision(double length, double spacing) {
   return static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(ContactSamples::maximum_subdivision)));
 }
 
-/// Whether this edge occurs in no triangle before t, and not in t before its i-th edge.
-inline bool is_new_edge(const ContactSurface& surface, int t, std::size_t i) noexcept {
-  const Triangle& own = surface.triangle(t);
-  const int a = own[i], b = own[(i + 1) % 3];
-  for (const int other : surface.triangles_at(a)) {
-    const Triangle& v = surface.triangle(other);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const bool is_before = other < t || (other == t && k < i);
-      const int c = v[k], d = v[(k + 1) % 3];
-      if (is_before && ((c == a && d == b) || (c == b && d == a))) return false;
-    }
-  }
-  return true;
-}
-
-/// The coordinates of a point in a box, 20 bits each, digit by digit in turn.
-inline std::uint64_t morton_code(const Vector3& x, const Box& box) noexcept {
-  const Vector3 size = box.size();
-  const double side = std::max({size[0], size[1], size[2]});
-  std::uint64_t code = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double part = side > 0.0 ? std::clamp((x[i] - box.low[i]) / side, 0.0, 1.0) : 0.0;
-    const auto digits = static_cast<std::uint64_t>(part * 1048575.0);
-    for (int bit = 0; bit < 20; ++bit) code |= (digits >> bit & 1u) << (3 * bit + i);
-  }
-  return code;
-}
-
-/// The binary digits of a number below 2^24 in reverse order behind the point.
-inline double reversed_digits(std::size_t number) noexcept {
-  double value = 0.0, digit = 0.5;
-  for (; number != 0; number >>= 1, digit *= 0.5)
-    if (number & 1u) value += digit;
-  return value;
-}
-
 /// Length of an edge without loads; infinity if not known.
 inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std::int64_t b) {
   const std::vector<Vector3>& x = surface.unloaded().positions;
@@ -74,78 +41,250 @@ inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std
 
 }  // namespace detail
 
-PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double spacing) {
-  add_level(surface, spacing);
-}
+/// Places the samples, chooses those of every level and divides the surface among them.
+class ContactSamples::Builder {
+ public:
+  Builder(ContactSamples& made, const ContactSurface& surface) : made_(made), surface_(surface) {}
 
-PALPATE_INLINE void ContactSamples::add_level(const ContactSurface& surface, double spacing) {
-  std::vector<bool> vertex_taken(static_cast<std::size_t>(surface.vertex_count()), false);
-  std::vector<int> first{count()};
-  for (int number = 0; number < static_cast<int>(surface.triangles().size()); ++number) {
-    add_triangle(surface, number, spacing, vertex_taken);
-    first.push_back(count());
+  void place() {
+    std::vector<bool> taken(static_cast<std::size_t>(surface_.vertex_count()), false);
+    sample_of_vertex_.resize(taken.size(), -1);
+    made_.first_.assign(1, 0);
+    for (int t = 0; t < static_cast<int>(surface_.triangles().size()); ++t) {
+      add_triangle(t);
+      made_.first_.push_back(made_.count());
+    }
+    points_.resize(made_.samples_.size());
+    for (int t = 0; t < static_cast<int>(surface_.triangles().size()); ++t) add_areas(t);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      Point& p = points_[i];
+      const ContactSample& s = made_.samples_[i];
+      for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * surface_.position(s.vertices[a]);
+      if (const double length = p.normal.norm(); length > 0.0) p.normal /= length;
+    }
   }
-  rank_level(surface, first.front());
-  first_.push_back(std::move(first));
-}
 
-/// Along a curve that fills space, neighbours in the order are neighbours in space (Morton 1966): reversed binary
-/// digits of the number in that order are low for points that are spread evenly (van der Corput 1935).
-PALPATE_INLINE void ContactSamples::rank_level(const ContactSurface& surface, int first) {
-  std::vector<std::pair<std::uint64_t, int>> order;
-  order.reserve(samples_.size() - static_cast<std::size_t>(first));
-  Box box;
-  for (const Vector3& x : surface.positions()) box.include(x);
-  for (int s = first; s < count(); ++s) {
-    const ContactSample& c = (*this)[s];
-    Vector3 x = Vector3::Zero();
-    for (std::size_t a = 0; a < 3; ++a) x += c.weights[a] * surface.position(c.vertices[a]);
-    order.emplace_back(detail::morton_code(x, box), s);
+  /// Coarse levels first: their points keep the largest distances. The order is random, so that no direction is
+  /// preferred, but the same in every run.
+  void choose_levels() {
+    made_.level_.assign(points_.size(), 0);
+    std::vector<int> order(points_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [](int i, int j) { return mixed(i) < mixed(j); });
+    std::vector<int> taken;
+    for (int level = made_.levels_ - 1; level > 0; --level) {
+      Cells cells(points_, least_distance * made_.spacing(level));
+      for (const int i : taken) cells.add(i);
+      for (const int i : order) {
+        if (made_.level_[at(i)] > 0 || cells.nearest(points_[at(i)]) >= 0) continue;
+        made_.level_[at(i)] = static_cast<std::uint8_t>(level);
+        cells.add(i);
+        taken.push_back(i);
+      }
+    }
   }
-  std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    float& density = density_[static_cast<std::size_t>(order[i].second)];
-    densest_ = std::max(densest_, 1.01 * static_cast<double>(density));
-    density *= static_cast<float>(detail::reversed_digits(i));
+
+  void divide_areas() {
+    made_.first_area_.assign(1, 0);
+    for (const std::uint8_t level : made_.level_) made_.first_area_.push_back(made_.first_area_.back() + level + 1);
+    made_.area_.assign(at(made_.first_area_.back()), 0.0f);
+    for (int level = 0; level < made_.levels_; ++level) {
+      Cells cells(points_, least_distance * made_.spacing(level));
+      for (int i = 0; level > 0 && i < made_.count(); ++i)
+        if (made_.level_of(i) >= level) cells.add(i);
+      for (int i = 0; i < made_.count(); ++i) {
+        const int owner = made_.level_of(i) >= level ? i : cells.nearest(points_[at(i)]);
+        if (owner >= 0)
+          made_.area_[at(made_.first_area_[at(owner)] + level)] += static_cast<float>(points_[at(i)].area);
+      }
+    }
   }
-}
 
-PALPATE_INLINE void ContactSamples::add_triangle(const ContactSurface& surface, int number, double spacing,
-                                                 std::vector<bool>& vertex_taken) {
-  const Triangle& t = surface.triangle(number);
-  double longest = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
-    if (!vertex_taken[static_cast<std::size_t>(t[i])])
-      samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
-    vertex_taken[static_cast<std::size_t>(t[i])] = true;
+  /// Within every triangle the samples of the last levels come first: a search for those of one level ends early.
+  void sort() {
+    std::vector<int> order(points_.size());
+    std::iota(order.begin(), order.end(), 0);
+    for (std::size_t t = 0; t + 1 < made_.first_.size(); ++t)
+      std::stable_sort(order.begin() + made_.first_[t], order.begin() + made_.first_[t + 1],
+                       [&](int i, int j) { return made_.level_of(i) > made_.level_of(j); });
+    ContactSamples sorted;
+    sorted.first_area_.assign(1, 0);
+    for (const int i : order) {
+      sorted.samples_.push_back(made_[i]);
+      sorted.normal_.push_back(points_[at(i)].normal.cast<float>());
+      sorted.level_.push_back(made_.level_[at(i)]);
+      for (int k = 0; k <= made_.level_of(i); ++k)
+        sorted.area_.push_back(made_.area_[at(made_.first_area_[at(i)] + k)]);
+      sorted.first_area_.push_back(static_cast<int>(sorted.area_.size()));
+    }
+    sorted.first_ = std::move(made_.first_);
+    sorted.finest_ = made_.finest_;
+    sorted.levels_ = made_.levels_;
+    made_ = std::move(sorted);
   }
-  for (std::size_t i = 0; i < 3; ++i) add_edge(surface, number, i, spacing);
-  const int n = detail::subdivision(longest, spacing);
-  for (int a = 1; a < n - 1; ++a)
-    for (int b = 1; b < n - a; ++b)
-      samples_.push_back(
-          {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
-  // n^2 / 2 points per triangle, since vertices and edges belong to several. A flat triangle has a large, finite
-  // density.
-  const Vector3 x = surface.position(t[0]);
-  const double area = 0.5 * cross(surface.position(t[1]) - x, surface.position(t[2]) - x).norm();
-  density_.resize(samples_.size(), static_cast<float>(0.5 * n * n / std::max(area, 1e-6 * longest * longest)));
+
+ private:
+  /// Points of a level are at least this far apart, in spacings; they then have about the density of the level.
+  static constexpr double least_distance = 0.72;
+
+  struct Point {
+    Vector3 position = Vector3::Zero(), normal = Vector3::Zero();
+    double area = 0.0;  // of level 0
+  };
+
+  /// Points in cells of a grid, in a hash table with chains. Points with normals more than 60 degrees apart are not
+  /// neighbours: they are on two sides of a thin part, or of an edge.
+  class Cells {
+   public:
+    Cells(const std::vector<Point>& points, double size)
+        : points_(points), size_(size), head_(std::bit_ceil(points.size() + 1), -1), next_(points.size(), -1) {}
+    void add(int i) {
+      int& head = head_[slot(cell(points_[at(i)].position))];
+      next_[at(i)] = std::exchange(head, i);
+    }
+    /// The nearest point that is closer than the size of a cell; -1 when none is.
+    int nearest(const Point& p) const noexcept {
+      int best = -1;
+      double least = size_ * size_;
+      const Cell c = cell(p.position);
+      for (std::int64_t x = -1; x <= 1; ++x)
+        for (std::int64_t y = -1; y <= 1; ++y)
+          for (std::int64_t z = -1; z <= 1; ++z)
+            for (int i = head_[slot({c[0] + x, c[1] + y, c[2] + z})]; i >= 0; i = next_[at(i)]) {
+              const Point& other = points_[at(i)];
+              const double squared = (other.position - p.position).squaredNorm();
+              if (squared < least && other.normal.dot(p.normal) > 0.5) least = squared, best = i;
+            }
+      return best;
+    }
+
+   private:
+    using Cell = std::array<std::int64_t, 3>;
+    Cell cell(const Vector3& x) const noexcept {
+      return {static_cast<std::int64_t>(std::floor(x[0] / size_)), static_cast<std::int64_t>(std::floor(x[1] / size_)),
+              static_cast<std::int64_t>(std::floor(x[2] / size_))};
+    }
+    std::size_t slot(const Cell& c) const noexcept {
+      std::uint64_t key = 0;
+      for (const std::int64_t x : c) key = (key ^ static_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+      return static_cast<std::size_t>((key ^ key >> 32) & (head_.size() - 1));
+    }
+    const std::vector<Point>& points_;
+    double size_;
+    std::vector<int> head_, next_;
+  };
+
+  /// A bijection of 64 bits without order (Steele, Lea and Flood 2014).
+  static std::uint64_t mixed(int i) noexcept {
+    std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+  }
+
+  /// Where the half-space is known, areas and normals are in its frame.
+  const Vector3& at_rest(int v) const noexcept {
+    const SubfacetCompliance* const known = surface_.subfacet().get();
+    return known != nullptr && known->is_known(v) ? known->vertex(v).position : surface_.position(v);
+  }
+  double length(int a, int b) const noexcept { return (surface_.position(a) - surface_.position(b)).norm(); }
+  int parts(const Triangle& t) const noexcept {
+    return detail::subdivision(std::max({length(t[0], t[1]), length(t[1], t[2]), length(t[2], t[0])}), made_.finest_);
+  }
+
+  void add_triangle(int number) {
+    const Triangle& t = surface_.triangle(number);
+    for (std::size_t i = 0; i < 3; ++i) {
+      int& sample = sample_of_vertex_[at(t[i])];
+      if (sample >= 0) continue;
+      sample = made_.count();
+      made_.samples_.push_back({{t[i], t[(i + 1) % 3], t[(i + 2) % 3]}, {1.0, 0.0, 0.0}});
+    }
+    for (std::size_t i = 0; i < 3; ++i) add_edge(t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
+    const int n = parts(t);
+    for (int a = 1; a < n - 1; ++a)
+      for (int b = 1; b < n - a; ++b)
+        made_.samples_.push_back(
+            {t, {static_cast<double>(a) / n, static_cast<double>(b) / n, static_cast<double>(n - a - b) / n}});
+  }
+
+  static std::pair<int, int> edge(int a, int b) noexcept { return std::minmax(a, b); }
+
+  void add_edge(int a, int b, int c) {
+    const auto [place, is_new] = edges_.try_emplace(edge(a, b), Edge{a, made_.count(), 0});
+    if (!is_new) return;
+    const int n = place->second.parts = detail::subdivision(length(a, b), made_.finest_);
+    for (int k = 1; k < n; ++k)
+      made_.samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
+  }
+
+  void give(int sample, double area, const Vector3& normal) {
+    points_[at(sample)].area += area;
+    points_[at(sample)].normal += area * normal;
+  }
+
+  /// A place on an edge from a to b: its area goes to the two samples of the edge beside it.
+  void give_to_edge(int a, int b, double part, double area, const Vector3& normal) {
+    const Edge& e = edges_.at(edge(a, b));
+    const double place = (e.from == a ? part : 1.0 - part) * e.parts;
+    const int k = std::clamp(static_cast<int>(place), 0, e.parts - 1);
+    const auto sample = [&](int i) {
+      if (i == 0) return sample_of_vertex_[at(e.from)];
+      return i == e.parts ? sample_of_vertex_[at(e.from == a ? b : a)] : e.first + i - 1;
+    };
+    give(sample(k), (1.0 - (place - k)) * area, normal);
+    give(sample(k + 1), (place - k) * area, normal);
+  }
+
+  /// Every small triangle of the lattice gives a third of its area to each corner.
+  void add_areas(int number) {
+    const Triangle& t = surface_.triangle(number);
+    const Vector3 x = at_rest(t[0]);
+    const Vector3 normal = cross(at_rest(t[1]) - x, at_rest(t[2]) - x);
+    const double area = 0.5 * normal.norm();
+    if (!(area > 0.0)) return;
+    const Vector3 unit = normal.normalized();
+    const int n = parts(t);
+    const double third = area / (3.0 * n * n);
+    int inner = made_.first_[at(number) + 1] - (n - 1) * (n - 2) / 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      give(sample_of_vertex_[at(t[i])], third, unit);
+      for (int k = 1; k < n; ++k) give_to_edge(t[i], t[(i + 1) % 3], static_cast<double>(k) / n, 3.0 * third, unit);
+    }
+    for (; inner < made_.first_[at(number) + 1]; ++inner) give(inner, 6.0 * third, unit);
+  }
+
+  struct Edge {
+    int from, first, parts;  // where its samples begin, the first of them, parts
+  };
+
+  ContactSamples& made_;
+  const ContactSurface& surface_;
+  std::vector<Point> points_;
+  std::vector<int> sample_of_vertex_;
+  std::map<std::pair<int, int>, Edge> edges_;
+};
+
+PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double finest, double coarsest)
+    : finest_(finest) {
+  constexpr int most_levels = 40;
+  levels_ = std::clamp(static_cast<int>(std::ceil(2.0 * std::log2(coarsest / finest) - rounding)), 0, most_levels) + 1;
+  Builder builder(*this, surface);
+  builder.place();
+  builder.choose_levels();
+  builder.divide_areas();
+  builder.sort();
 }
 
-PALPATE_INLINE int ContactSamples::level_of(int sample) const noexcept {
-  int level = levels() - 1;
-  while (level > 0 && sample < first_of(0, level)) --level;
-  return level;
+PALPATE_INLINE double ContactSamples::level_with(double spacing) const noexcept {
+  return std::clamp(2.0 * std::log2(spacing / finest_), 0.0, static_cast<double>(levels_ - 1));
 }
 
-PALPATE_INLINE void ContactSamples::add_edge(const ContactSurface& surface, int number, std::size_t i, double spacing) {
-  if (!detail::is_new_edge(surface, number, i)) return;
-  const Triangle& t = surface.triangle(number);
-  const int a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
-  const int n = detail::subdivision((surface.position(a) - surface.position(b)).norm(), spacing);
-  for (int k = 1; k < n; ++k)
-    samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
+PALPATE_INLINE double ContactSamples::area(int sample, double level) const noexcept {
+  const int low = std::min(static_cast<int>(level), levels_ - 1), last = level_of(sample);
+  const float* const own = area_.data() + first_area_[at(sample)];
+  const double part = level - low, here = low <= last ? static_cast<double>(own[low]) : 0.0;
+  return part > 0.0 ? (1.0 - part) * here + (low < last ? part * static_cast<double>(own[low + 1]) : 0.0) : here;
 }
 
 PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const ContactSample& wanted,
@@ -155,14 +294,14 @@ PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const 
   if (wanted.vertices[0] >= surface.vertex_count()) return best;
   double least = 1.0;  // with half of the weight on other vertices it is a different place
   for (const int t : surface.triangles_at(wanted.vertices[0]))
-    for (int s = first_of(t, level); s < first_of(t + 1, level); ++s)
+    for (int s = first_of(t); s < first_of(t + 1) && level_of(s) >= level; ++s)
       if (const double off = detail::difference((*this)[s], wanted); off < least) least = off, best = s;
   return best;
 }
 
 PALPATE_INLINE int ContactSamples::of_vertex(const ContactSurface& surface, int vertex) const noexcept {
-  for (const int t : surface.triangles_at(vertex))  // the samples of a triangle begin with those at its corners
-    for (int s = first_of(t); s < std::min(first_of(t) + 3, first_of(t + 1)); ++s)
+  for (const int t : surface.triangles_at(vertex))
+    for (int s = first_of(t); s < first_of(t + 1); ++s)
       if ((*this)[s].vertices[0] == vertex && (*this)[s].weights[0] == 1.0) return s;
   return -1;
 }

@@ -1,11 +1,13 @@
 // The compliance between contact points, cached over linearisations and ticks.
 #pragma once
 
-#include <palpate/contact/tissue_view.hpp>
+#include <palpate/contact/detail/candidates.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// J_p C J_q^T [m/N], the displacement of point p per force on point q, 3 x 3, for up to `capacity` points at a time.
+/// The displacement of point p per force on point q [m/N], 3 x 3, for up to `capacity` points at a time: J_p C J_q^T,
+/// and what SubfacetCompliance adds to it. That of a point per force on itself has no self compliance of the
+/// half-space: it depends on the area that the point stands for, which changes.
 /// Contact points are fixed in the material: while they press, only directions change, and these blocks do not. A point
 /// keeps its slot until another point needs it.
 class PointCompliance {
@@ -23,36 +25,36 @@ class PointCompliance {
   void begin_rows() noexcept { ++rows_; }
 
   /// The slot of a point; `hint` is its last slot. At most `capacity` different points between two `begin_rows`.
-  int slot_of(int sample, int hint) noexcept;
+  int slot_of(const TissueView& tissue, const Candidates& points, int sample, int hint) noexcept;
 
-  /// Sets the point in a slot whose number is not one of a sample: a point that moves.
-  void move(int slot, const ContactSample& point) noexcept;
+  /// The half-space at the point in a slot.
+  const HalfSpacePoint& half_space_point(int slot) const noexcept { return point_[at(slot)]; }
+  /// TissueView::rotation_at of that point.
+  const Matrix3& rotation(int slot) const noexcept { return rotation_[at(slot)]; }
 
   /// The compliance between the points in two slots, p >= q.
-  PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const ContactSamples& samples, int p,
+  PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const Candidates& points, int p,
                                                   int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
     const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
     if (known_[i] != version) {
       known_[i] = version;
-      compute(tissue, samples, p, q, block_[i]);
+      compute(tissue, points, p, q, block_[i]);
     }
     return block_[i];
   }
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  int take(int sample) noexcept;
+  int take(const TissueView& tissue, const Candidates& points, int sample) noexcept;
   /// Out of line, so that the look-up is inlined.
-  void compute(const TissueView& tissue, const ContactSamples& samples, int p, int q, Matrix3& block) const noexcept;
-  const ContactSample& point(const ContactSamples& samples, int slot) const noexcept {
-    return sample_[at(slot)] < samples.count() ? samples[sample_[at(slot)]] : moving_[at(slot)];
-  }
+  void compute(const TissueView& tissue, const Candidates& points, int p, int q, Matrix3& block) const noexcept;
 
   std::vector<Matrix3> block_;        // of pairs of slots, lower triangle by rows
   std::vector<std::uint64_t> known_;  // versions of the two points that the block belongs to
   std::vector<int> sample_;
-  std::vector<ContactSample> moving_;  // of slots with points that move
+  std::vector<HalfSpacePoint> point_;
+  std::vector<Matrix3> rotation_;
   std::vector<std::uint64_t> version_, used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
   int next_ = 0;

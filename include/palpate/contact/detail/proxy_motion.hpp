@@ -36,8 +36,6 @@ class ProxyMotion {
   /// returned: 1, or less where a proxy or the surface (`surface` [m]) would move farther than one linearisation may.
   /// A tool that nothing presses moves independently.
   double follow(Tools tools, double floor, double surface) noexcept;
-  /// After a step with points that move on their facets: notes whether the forces go back and forth with them.
-  void note_alternation(Tools tools) noexcept;
   /// Whether all proxies got to the positions of the solution in the last step.
   bool arrived() const noexcept { return arrived_; }
   /// Change of the tools' forces and torques since `begin`, relative to a force `scale` [N].
@@ -56,9 +54,6 @@ class ProxyMotion {
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
   std::array<bool, maximum_tools> active_{};
   std::array<Ahead, maximum_tools> ahead_{};
-  std::array<Vector3, maximum_tools> change_{};  // of the forces, in the last whole step of this tick
-  bool changed_ = false;                         // there was such a step
-  bool alternates_ = false;
   double longest_part_ = 1.0;  // of a step
   int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
   bool clipped_ = false, arrived_ = true, took_whole_step_ = false;

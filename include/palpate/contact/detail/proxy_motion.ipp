@@ -90,20 +90,6 @@ PALPATE_INLINE double ProxyMotion::follow(Tools tools, double floor, double surf
   return part;
 }
 
-PALPATE_INLINE void ProxyMotion::note_alternation(Tools tools) noexcept {
-  constexpr double lasting = 0.9, negligible = 1e-6;  // of the change before, of the force
-  double back = 0.0, before = 0.0, all = 0.0;
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    const Vector3 change = tools[t].force - start_force_[t];
-    back -= change.dot(change_[t]);
-    before += change_[t].squaredNorm();
-    all += tools[t].force.squaredNorm();
-    change_[t] = change;
-  }
-  alternates_ = arrived_ && changed_ && back > std::max(lasting * before, negligible * negligible * all);
-  changed_ = arrived_;
-}
-
 PALPATE_INLINE double ProxyMotion::relative_change(Tools tools, double scale) const noexcept {
   double change = 0.0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -120,9 +106,7 @@ PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept 
     return tool.active && tool.path_length() > still * tool.radius;
   });
   if (moves) longest_part_ = 1.0;
-  const int restless = alternates_ ? patience / 2 : 1;
-  restless_ticks_ = moves || (converged && !alternates_) ? 0 : restless_ticks_ + (took_whole_step_ ? restless : 0);
-  changed_ = alternates_ = false;
+  restless_ticks_ = moves || converged ? 0 : restless_ticks_ + (took_whole_step_ ? 1 : 0);
   took_whole_step_ = false;
   if (restless_ticks_ < patience) return;
   restless_ticks_ = 0;

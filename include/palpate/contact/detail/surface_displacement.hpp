@@ -1,14 +1,24 @@
 // Displacement of the vertices of the contact surface under the forces of the tools.
 #pragma once
 
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// A force on a point of the surface.
+struct PointLoad {
+  int sample = -1;
+  HalfSpacePoint point;
+  double area = 0.0;                ///< that the point stands for [m^2]
+  double path = 0.0;                ///< displacement of the point [m]
+  Vector3 force = Vector3::Zero();  ///< [N], in the axes of the SubfacetCompliance
+};
+
 /// Forces on vertices, and the displacement of any vertex under them, computed on request and cached until the forces
-/// change.
+/// change. The displacement of points within facets needs the forces on points, too.
 class SurfaceDisplacement {
  public:
   /// Allocates for a surface and for `capacity` loaded vertices; for set-up.
@@ -22,14 +32,17 @@ class SurfaceDisplacement {
   /// Forces on vertices that are gone are dropped. No allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
   void clear() noexcept {
-    count_ = 0;
+    count_ = load_count_ = 0;
     ++generation_;
   }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
   void add(int vertex, const Vector3& force, int& slot) noexcept;
 
+  /// Adds a force on a point that is known in a SubfacetCompliance, whose parts were added to its vertices.
+  void add_load(const PointLoad& load, const ContactSample& sample) noexcept;
+
   /// Takes `part` of these forces and 1 - `part` of those of `before`. Forces beyond the capacity are dropped.
-  void blend(const SurfaceDisplacement& before, double part) noexcept;
+  void blend(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
 
   /// Displacement of a vertex under the forces [m].
   const Vector3& at(const TissueView& tissue, int vertex) noexcept {
@@ -40,6 +53,10 @@ class SurfaceDisplacement {
     }
     return displacement_[i];
   }
+  /// Displacement of a known point: that of the mesh without what it shows of the half-space, and that of the
+  /// half-space [m]. O(loads).
+  Vector3 at_point(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSample& sample,
+                   const HalfSpacePoint& point, int number) noexcept;
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
@@ -53,8 +70,16 @@ class SurfaceDisplacement {
   double reach_from_expected(const TissueView& tissue) noexcept;
 
  private:
+  /// Of the points with loads [m].
+  double longest_path() const noexcept;
+  /// What the mesh shows of the half-space at a vertex under the loads [m].
+  const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
+
   std::vector<VertexForce> forces_;
-  int count_ = 0;
+  std::vector<PointLoad> loads_;
+  int count_ = 0, load_count_ = 0;
+  std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
+  std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;
   std::vector<Vector3> displacement_;
   std::vector<std::uint64_t> stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls

@@ -10,6 +10,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity)
     : forces_(static_cast<std::size_t>(capacity)),
+      loads_(static_cast<std::size_t>(capacity)),
+      shown_(static_cast<std::size_t>(vertices)),
+      loaded_(static_cast<std::size_t>(vertices)),
+      shown_stamp_(static_cast<std::size_t>(vertices), 0),
+      loaded_stamp_(static_cast<std::size_t>(vertices), 0),
       displacement_(static_cast<std::size_t>(vertices)),
       stamp_(static_cast<std::size_t>(vertices), 0),
       slot_(static_cast<std::size_t>(vertices), -1) {}
@@ -22,6 +27,11 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
   displacement_.swap(fresh.displacement_);
   stamp_.swap(fresh.stamp_);
   slot_.swap(fresh.slot_);
+  shown_.swap(fresh.shown_);
+  loaded_.swap(fresh.loaded_);
+  shown_stamp_.swap(fresh.shown_stamp_);
+  loaded_stamp_.swap(fresh.loaded_stamp_);
+  load_count_ = 0;  // samples have other numbers
   const auto end = std::remove_if(forces_.begin(), forces_.begin() + count_, [&](const VertexForce& f) {
     return static_cast<std::size_t>(f.vertex) >= displacement_.size();
   });
@@ -40,8 +50,62 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
   f.force = ModelVector(force);
 }
 
-PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part) noexcept {
+PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
+  if (load_count_ == static_cast<int>(loads_.size())) return;
+  loads_[static_cast<std::size_t>(load_count_++)] = load;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (sample.weights[a] == 0.0) continue;
+    const auto v = static_cast<std::size_t>(sample.vertices[a]);
+    if (std::exchange(loaded_stamp_[v], generation_) != generation_) loaded_[v].setZero();
+    loaded_[v] += sample.weights[a] * load.force;
+  }
+}
+
+PALPATE_INLINE const Vector3& SurfaceDisplacement::shown(const SubfacetCompliance& subfacet, int vertex) noexcept {
+  const auto i = static_cast<std::size_t>(vertex);
+  if (std::exchange(shown_stamp_[i], generation_) == generation_) return shown_[i];
+  Vector3& u = shown_[i];
+  u.setZero();
+  for (const SubfacetCompliance::Block& block : subfacet.blocks(vertex)) {
+    const auto j = static_cast<std::size_t>(block.vertex);
+    if (loaded_stamp_[j] == generation_) u.noalias() += block.shown.transpose() * loaded_[j];
+  }
+  return u;
+}
+
+PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                                                     const ContactSample& sample, const HalfSpacePoint& point,
+                                                     int number) noexcept {
+  Vector3 mesh = Vector3::Zero(), u = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (sample.weights[a] == 0.0) continue;
+    mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
+    u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  }
+  for (int i = 0; i < load_count_; ++i) {
+    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
+    if (load.sample == number)
+      u.noalias() += half_space_self_compliance(point, load.area) * load.force;
+    else
+      u.noalias() += SubfacetCompliance::half_space(point, load.point) * load.force;
+  }
+  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * u) : Vector3(mesh + u);
+}
+
+PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part,
+                                               const ContactSamples& samples) noexcept {
   ++generation_;
+  const int own = std::exchange(load_count_, 0);
+  for (int i = 0; i < own; ++i) {
+    PointLoad load = loads_[static_cast<std::size_t>(i)];
+    load.force *= part;
+    add_load(load, samples[load.sample]);
+  }
+  for (int i = 0; i < before.load_count_; ++i) {
+    PointLoad load = before.loads_[static_cast<std::size_t>(i)];
+    load.force *= 1.0 - part;
+    add_load(load, samples[load.sample]);
+  }
   for (int i = 0; i < count_; ++i) {
     VertexForce& f = forces_[static_cast<std::size_t>(i)];
     f.force = ModelVector(part * f.force.in_model_axes());
@@ -71,7 +135,13 @@ PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView&
   double loaded = 0.0;
   for (const VertexForce& f : forces()) loaded = std::max(loaded, deviation(tissue, f.vertex));
   for (const int v : expected.loaded()) loaded = std::max(loaded, deviation(tissue, v));
-  return 2.0 * loaded;
+  return 2.0 * loaded + longest_path();
+}
+
+PALPATE_INLINE double SurfaceDisplacement::longest_path() const noexcept {
+  double longest = 0.0;
+  for (int i = 0; i < load_count_; ++i) longest = std::max(longest, loads_[static_cast<std::size_t>(i)].path);
+  return longest;
 }
 
 PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexcept {
@@ -80,7 +150,7 @@ PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexc
     bounded += tissue.compliance_bound(f.vertex) * f.force.in_model_axes().norm();
     loaded = std::max(loaded, at(tissue, f.vertex).norm());
   }
-  return std::min(bounded, 2.0 * loaded);
+  return std::max(std::min(bounded, 2.0 * loaded), longest_path());
 }
 
 }}  // namespace palpate

@@ -1,6 +1,7 @@
 // Interface of a linear elastic body for statics, independent of the element type.
 #pragma once
 
+#include <palpate/contact/detail/projected_half_space.hpp>
 #include <palpate/assembly/detail/essential_conditions.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -56,6 +57,9 @@ class ElasticBody {
 
   /// The material of each of these elements at small strain; unknown if it is not isotropic.
   virtual std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const = 0;
+  /// What its mesh makes of the compliance of a half-space, at these nodes. Allocates; on all threads.
+  virtual ProjectedHalfSpace half_space(std::span<const NodeId> touched, const EssentialConditions& conditions,
+                                        const SetupLimits& limits) const = 0;
   virtual CacheKey key() const noexcept = 0;
   virtual void report_locking(SetupReport& report) const = 0;
 };

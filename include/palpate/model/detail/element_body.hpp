@@ -7,6 +7,7 @@
 #include <palpate/mesh/surface.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/detail/project_half_space.hpp>
 
 #include <utility>
 
@@ -39,6 +40,8 @@ class ElementBody final : public ElasticBody {
   std::span<const Matrix6> elasticities() const noexcept override { return body_.elasticity; }
   int elasticity_of(Index e) const noexcept override { return static_cast<int>(body_.material_of(e)); }
   std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const override;
+  ProjectedHalfSpace half_space(std::span<const NodeId> touched, const EssentialConditions& conditions,
+                                const SetupLimits& limits) const override;
   CacheKey key() const noexcept override;
   void report_locking(SetupReport& report) const override;
 
@@ -130,6 +133,15 @@ double ElementBody<E>::strain_energy(const VectorX& u) const {
 template <Element E>
 std::vector<ContactMaterial> ElementBody<E>::contact_materials(std::span<const Index> elements) const {
   return detail::contact_materials(body_, elements);
+}
+template <Element E>
+ProjectedHalfSpace ElementBody<E>::half_space(std::span<const NodeId> touched, const EssentialConditions& conditions,
+                                              const SetupLimits& limits) const {
+  std::vector<std::uint8_t> constrained(body_.mesh.positions.size(), 0);
+  for (std::size_t i = 0; i < 3 * constrained.size(); ++i)
+    if (conditions.is_constrained(static_cast<Index>(i)))
+      constrained[i / 3] = static_cast<std::uint8_t>(constrained[i / 3] | 1u << i % 3);
+  return project_half_space(body_, boundary_, touched, constrained, nullptr, limits);
 }
 template <Element E>
 CacheKey ElementBody<E>::key() const noexcept {

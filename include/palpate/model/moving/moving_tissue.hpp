@@ -125,6 +125,7 @@ class MovingTissue : public ModelBase {
     return views_.front().compliance.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
   }
   double compliance_floor() const noexcept { return views_.front().compliance.floor(); }
+  Matrix3 vertex_rotation(int v) const noexcept { return views_.front().rotation[static_cast<std::size_t>(v)]; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   /// Takes the newest surface, and updates the description of loads that error messages contain; not while a session

@@ -191,6 +191,8 @@ void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eage
   surface_ = ContactSurface(positions, touchable.triangles);
   surface_.set_unloaded(unloaded());
   surface_.set_materials(elastic_body().contact_materials(touchable.elements));
+  surface_.set_subfacet(std::make_shared<SubfacetCompliance>(
+      elastic_body().half_space(touchable_nodes(), statics_->conditions(), limits())));
   surface_.set_model_error(model_error());
   moved_ = std::move(positions);
   for (const NodeId node : touchable.shell_nodes) moved_.push_back(deformed(node));

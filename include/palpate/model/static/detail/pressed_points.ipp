@@ -40,7 +40,7 @@ PALPATE_INLINE std::vector<PressedPoint> press_points(HapticServo& servo, double
       before = force;
       force = force_at(goal);
     }
-    pressed.push_back({force, servo.indentation(), servo.local_indentation()});
+    pressed.push_back({force, servo.indentation()});
   }
   return pressed;
 }

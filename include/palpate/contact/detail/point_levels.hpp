@@ -1,0 +1,62 @@
+// How many contact points every tool has.
+#pragma once
+
+#include <palpate/contact/contact.hpp>
+#include <palpate/contact/detail/contact_samples.hpp>
+
+#include <array>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// The level of the contact samples for every tool, so that a press has about the same number of points on any mesh and
+/// at any depth. The level follows the area that presses, in small steps: between two levels points fade in and out
+/// (ContactSamples::area), so that the force has no jump. A tool with more points than its share of the rows gets a
+/// higher level at once. What one tool does not need of the rows is for the others. No allocation.
+class PointLevels {
+ public:
+  static constexpr double finest_spacing = 0.125, coarsest_spacing = 0.5;  ///< of points, in radii
+  static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
+
+  /// Back to the state after construction.
+  void reset() noexcept { *this = {}; }
+  /// Divides the rows among the tools and limits their levels. `radius`: of the tools near the surface; 0 for the
+  /// others. `has_areas`: the forces depend on the areas of the points; else a tool has the finest level that fits.
+  void begin_tick(const ContactSamples& samples, const std::array<double, maximum_tools>& radius, int capacity,
+                  bool has_areas, int wanted) noexcept;
+  int share(int tool) const noexcept { return share_[at(tool)]; }
+  double level(int tool) const noexcept { return level_[at(tool)]; }
+  /// The last level that has all points of a tool.
+  int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
+  /// The level of a tool that begins to press with this area [m^2], of which parts may not press in the end.
+  void start(const ContactSamples& samples, int tool, double area) noexcept;
+
+  /// Forgets the points noted before: those of the last round of a tick count.
+  void begin_round() noexcept;
+  /// A point for which there is no room, and its penetration [m].
+  void note_left_out(int tool, double penetration) noexcept;
+  /// Sets the levels for the next tick. Per tool: rows with force, and the area that they stand for [m^2].
+  void end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
+                const std::array<double, maximum_tools>& area) noexcept;
+  /// Penetration of the deepest point without a row [m].
+  double deepest() const noexcept { return deepest_; }
+
+ private:
+  static constexpr int headroom = 16;  // rows above those of the last tick for a tool that needs less than its share
+  static constexpr double longest_step = 0.1;  // levels per tick
+  static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
+  void divide() noexcept;
+  int wanted(std::size_t tool) const noexcept;
+  double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
+
+  std::array<int, maximum_tools> share_{}, needed_{}, left_out_{};
+  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, most_{};
+  double deepest_ = 0.0;
+  int capacity_ = 0, wanted_ = 0;
+  bool has_areas_ = false;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/point_levels.ipp>
+#endif

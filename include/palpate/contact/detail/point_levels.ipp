@@ -1,0 +1,92 @@
+// Definitions of point_levels.hpp.
+#pragma once
+
+#include <palpate/contact/detail/point_levels.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
+                                            const std::array<double, maximum_tools>& radius, int capacity,
+                                            bool has_areas, int wanted) noexcept {
+  radius_ = radius;
+  capacity_ = capacity;
+  has_areas_ = has_areas;
+  wanted_ = wanted;
+  for (std::size_t t = 0; t < maximum_tools; ++t) {
+    if (!(radius[t] > 0.0)) continue;
+    least_[t] = has_areas ? samples.level_with(finest_spacing * radius[t]) : 0.0;
+    most_[t] = samples.level_with((has_areas ? coarsest_spacing : coarsest_of_mesh) * radius[t]);
+    level_[t] = std::clamp(level_[t], least_[t], std::max(least_[t], most_[t]));
+  }
+  divide();
+  begin_round();
+}
+
+/// Tools that need less than an equal share of the rest get what they need; the others share the rest equally.
+PALPATE_INLINE void PointLevels::divide() noexcept {
+  std::array<bool, maximum_tools> open{};
+  for (std::size_t t = 0; t < maximum_tools; ++t) open[t] = radius_[t] > 0.0;
+  int rest = capacity_, tools = static_cast<int>(std::count(open.begin(), open.end(), true));
+  share_.fill(1);
+  for (bool given = true; given && tools > 0;) {
+    given = false;
+    const int equal = rest / tools;
+    for (std::size_t t = 0; t < maximum_tools; ++t) {
+      if (!open[t] || needed_[t] + headroom >= equal) continue;
+      share_[t] = needed_[t] + headroom;
+      rest -= share_[t];
+      --tools;
+      open[t] = false;
+      given = true;
+    }
+  }
+  for (std::size_t t = 0; t < maximum_tools; ++t)
+    if (open[t]) share_[t] = std::max(1, rest / tools);
+}
+
+/// Between two levels a tool has up to twice as many points as it would have at a level of that spacing.
+PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
+  const int most = std::max(1, share_[tool] / 2);
+  return has_areas_ ? std::min(wanted_, most) : most;
+}
+
+/// The level at which an area has the wanted number of points, each the middle of a hexagon.
+PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std::size_t tool,
+                                             double area) const noexcept {
+  const double spacing = std::sqrt(area / wanted(tool) * 2.0 / std::numbers::sqrt3);
+  return std::clamp(samples.level_with(spacing), least_[tool], std::max(least_[tool], most_[tool]));
+}
+
+PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
+  if (area > 0.0) level_[at(tool)] = level_for(samples, at(tool), area);
+}
+
+PALPATE_INLINE void PointLevels::begin_round() noexcept {
+  left_out_.fill(0);
+  deepest_ = 0.0;
+}
+
+PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noexcept {
+  ++left_out_[at(tool)];
+  deepest_ = std::max(deepest_, penetration);
+}
+
+PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
+                                          const std::array<double, maximum_tools>& area) noexcept {
+  for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t];
+  divide();
+  for (std::size_t t = 0; t < maximum_tools; ++t) {
+    if (!(radius_[t] > 0.0) || used[t] == 0) {
+      level_[t] = 0.0;
+      continue;
+    }
+    const double step = level_for(samples, t, area[t]) - level_[t];
+    level_[t] += left_out_[t] > 0 ? std::max(1.0, step) : std::clamp(step, -longest_step, longest_step);
+  }
+}
+
+}}  // namespace palpate

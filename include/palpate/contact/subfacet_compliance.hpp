@@ -1,0 +1,72 @@
+// The compliance of contact points that are closer to each other than the vertices of the mesh.
+#pragma once
+
+#include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/contact/detail/projected_half_space.hpp>
+
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// What has to be added to the compliance of the mesh so that the points of a contact have the dent of an elastic body,
+/// not that of the facets (subtraction of the singularity):
+///
+///     A(x_i, x_j) = N_i^T C N_j + chi G(x_i, x_j) - N_i^T chi G_h N_j
+///
+/// with the compliance C of the vertices, the weights N of a point, the half-space G, its support chi, and G_h, what
+/// mesh and element make of G. C - G_h is smooth: facets interpolate it well. A is symmetric and does not depend on
+/// depth, place or history, so that the forces have an energy. G_h is computed at set-up (ProjectedHalfSpace).
+/// Immutable afterwards; ticks only read.
+class SubfacetCompliance {
+ public:
+  /// A block chi G_h of two vertices.
+  struct Block {
+    int vertex;     ///< of the displacement
+    Matrix3 shown;  ///< rows displacement, columns force [m/N]
+  };
+
+  /// `vertices`: of the contact surface; one with `root` 0 is not known, and points that depend on it have the
+  /// compliance of the mesh only. `first`: per vertex j the number of its first block, one past the end last; `blocks`:
+  /// displacement of other vertices, and of j itself, per force on j.
+  SubfacetCompliance(std::vector<HalfSpacePoint> vertices, std::vector<int> first, std::vector<Block> blocks)
+      : vertices_(std::move(vertices)), first_(std::move(first)), blocks_(std::move(blocks)) {}
+
+  explicit SubfacetCompliance(const ProjectedHalfSpace& table);
+  /// Of a surface that joins those of several bodies, whose vertices follow each other; null: nothing is known.
+  struct Body {
+    const SubfacetCompliance* own;
+    int vertices;
+  };
+  explicit SubfacetCompliance(std::span<const Body> bodies);
+
+  int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
+  const HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }
+  bool is_known(int v) const noexcept { return vertices_[at(v)].is_known(); }
+  std::span<const Block> blocks(int v) const noexcept {
+    return {blocks_.data() + first_[at(v)], static_cast<std::size_t>(first_[at(v) + 1] - first_[at(v)])};
+  }
+  std::size_t bytes() const noexcept {
+    return vertices_.size() * sizeof(HalfSpacePoint) + first_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
+  }
+
+  /// A point of the surface with this normal; not known unless all of its vertices are.
+  HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
+  /// chi G of two different points; zero where one is not known [m/N].
+  static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;
+  /// N_p^T chi G_h N_q [m/N]. Checks the blocks of up to three vertices.
+  Matrix3 shown(const ContactSample& p, const ContactSample& q) const noexcept;
+
+ private:
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  std::vector<HalfSpacePoint> vertices_;
+  std::vector<int> first_;
+  std::vector<Block> blocks_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/subfacet_compliance.ipp>
+#endif

@@ -1,0 +1,75 @@
+// Definitions of subfacet_compliance.hpp.
+#pragma once
+
+#include <palpate/contact/subfacet_compliance.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const ProjectedHalfSpace& table) {
+  std::vector<std::vector<Block>> of(at(table.vertex_count()));
+  for (int i = 0; i < table.vertex_count(); ++i) {
+    vertices_.push_back(table.vertex(i));
+    for (std::size_t k = 0; k < table.columns(i).size(); ++k) {
+      const int j = table.columns(i)[k];
+      of[at(j)].push_back({i, table.blocks(i)[k]});
+      if (i != j) of[at(i)].push_back({j, table.blocks(i)[k].transpose()});
+    }
+  }
+  first_.assign(1, 0);
+  for (const auto& blocks : of) {
+    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+    first_.push_back(static_cast<int>(blocks_.size()));
+  }
+}
+
+PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodies) {
+  first_.assign(1, 0);
+  int number = 0;
+  for (const Body& body : bodies) {
+    const int before = vertex_count();
+    for (int v = 0; v < body.vertices; ++v) {
+      HalfSpacePoint& p = vertices_.emplace_back(body.own != nullptr ? body.own->vertex(v) : HalfSpacePoint{});
+      p.body = number;
+      for (const Block& block : body.own != nullptr ? body.own->blocks(v) : std::span<const Block>{})
+        blocks_.push_back({block.vertex + before, block.shown});
+      first_.push_back(static_cast<int>(blocks_.size()));
+    }
+    ++number;
+  }
+}
+
+PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
+                                                        const Vector3& normal) const noexcept {
+  HalfSpacePoint p;
+  p.normal = normal;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double weight = sample.weights[a];
+    if (weight == 0.0) continue;
+    const HalfSpacePoint& own = vertex(sample.vertices[a]);
+    if (!own.is_known()) return {};
+    p.body = own.body;
+    p.position += weight * own.position;
+    p.root += weight * own.root;
+    p.poisson_ratio += weight * own.poisson_ratio;
+    p.length += weight * own.length;
+  }
+  return p;
+}
+
+PALPATE_INLINE Matrix3 SubfacetCompliance::half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  return p.is_known() && q.is_known() && p.body == q.body ? supported_compliance(p, q) : Matrix3::Zero();
+}
+
+PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const ContactSample& p, const ContactSample& q) const noexcept {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t b = 0; b < 3; ++b) {
+    if (q.weights[b] == 0.0) continue;
+    for (const Block& block : blocks(q.vertices[b]))
+      for (std::size_t a = 0; a < 3; ++a)
+        if (block.vertex == p.vertices[a] && p.weights[a] > 0.0)
+          sum.noalias() += (p.weights[a] * q.weights[b]) * block.shown;
+  }
+  return sum;
+}
+
+}}  // namespace palpate
