@@ -164,3 +164,60 @@ TEST_CASE("the lattice of a huge triangle is bounded", "[contact][samples][extre
   CHECK(ContactSamples(huge, 1e308).count() == 3);
   CHECK(ContactSamples(ContactSurface(), 1.0).count() == 0);
 }
+
+TEST_CASE("every level divides the whole surface among points that are spread evenly", "[contact][samples][levels]") {
+  const auto split = GENERATE(BoxSplit::six, BoxSplit::five_mirrored);
+  const auto [cells, finest] = GENERATE(std::pair{2, 0.04}, std::pair{9, 0.04}, std::pair{40, 0.03});
+  const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {cells, cells, cells / 2}, split));
+  const ContactSamples samples(surface, finest, 0.2);
+  double area = 0.0;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
+    area += 0.5 * surface.facet_length(t) * surface.facet_length(t);
+  REQUIRE(samples.levels() >= 5);
+  for (double level = 0.0; level <= samples.levels() - 1; level += 0.5) {
+    double sum = 0.0;
+    for (int s = 0; s < samples.count(); ++s) sum += samples.area(s, level);
+    CAPTURE(cells, level);
+    CHECK_THAT(sum, Catch::Matchers::WithinRel(area, 1e-5));
+  }
+  std::vector<Vector3> place, normal;
+  for (int s = 0; s < samples.count(); ++s) {
+    place.push_back(position(surface, samples[s]));
+    normal.push_back(samples.normal(s));
+  }
+  for (int level = 1; level < samples.levels(); ++level) {
+    int count = 0;
+    double nearest = infinity;
+    for (int s = 0; s < samples.count(); ++s) {
+      if (samples.level_of(s) < level) continue;
+      ++count;
+      for (int r = 0; r < s; ++r)
+        if (samples.level_of(r) >= level &&
+            normal[static_cast<std::size_t>(r)].dot(normal[static_cast<std::size_t>(s)]) > 0.5)
+          nearest = std::min(nearest, (place[static_cast<std::size_t>(r)] - place[static_cast<std::size_t>(s)]).norm());
+    }
+    CAPTURE(cells, level, count);
+    CHECK(nearest >= 0.7 * samples.spacing(level));
+    const double hexagons = area / (0.5 * std::sqrt(3.0) * samples.spacing(level) * samples.spacing(level));
+    CHECK(count <= 1.5 * hexagons);
+    if (samples.spacing(level) > 2.0 / cells) CHECK(count >= 0.6 * hexagons);  // else the mesh has few vertices
+  }
+}
+
+TEST_CASE("the samples of a triangle begin with those of the last levels", "[contact][samples][levels]") {
+  const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 3, 2}, BoxSplit::six));
+  const ContactSamples samples(surface, 0.04, 0.3);
+  int wrong = 0, fading = 0;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
+    for (int s = samples.first_of(t) + 1; s < samples.first_of(t + 1); ++s)
+      wrong += samples.level_of(s) > samples.level_of(s - 1);
+  for (int s = 0; s < samples.count(); ++s) {
+    const int last = samples.level_of(s);
+    if (last + 1 == samples.levels()) continue;
+    ++fading;
+    wrong += !(samples.area(s, last) > 0.0) || samples.area(s, last + 1) != 0.0 ||
+             !(samples.area(s, last + 0.9) < 0.11 * samples.area(s, last));
+  }
+  CHECK(wrong == 0);
+  CHECK(fading > 0);
+}

@@ -59,7 +59,8 @@ Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const Con
 
 TEST_CASE("compliance between points is J C J^T, independent of earlier requests", "[contact][point_compliance]") {
   CountingTissue tissue;
-  const ContactSamples samples(tissue.surface, 0.004);
+  const Candidates points(ContactSamples(tissue.surface, 0.004), nullptr, 8);
+  const ContactSamples& samples = points.samples();
   const int count = samples.first_of(static_cast<int>(tissue.surface.triangles().size()));
   REQUIRE(count > 24);
   PointCompliance compliance(8);
@@ -73,14 +74,14 @@ TEST_CASE("compliance between points is J C J^T, independent of earlier requests
       const int s = static_cast<int>(random.uniform(0.0, count - 1e-9));
       int& h = hint[static_cast<std::size_t>(s)];
       rows.push_back(s);
-      slots.push_back(h = compliance.slot_of(s, round % 3 == 0 ? -1 : h));
+      slots.push_back(h = compliance.slot_of(tissue, points, s, round % 3 == 0 ? -1 : h));
     }
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (std::size_t j = 0; j < rows.size(); ++j) {
         // One point has one slot, two points have two.
         CHECK((rows[i] == rows[j]) == (slots[i] == slots[j]));
         if (slots[i] < slots[j]) continue;
-        const Matrix3 given = compliance(tissue, samples, slots[i], slots[j]);
+        const Matrix3 given = compliance(tissue, points, slots[i], slots[j]);
         worst = std::max(worst, (given - expected(tissue, samples[rows[i]], samples[rows[j]])).cwiseAbs().maxCoeff());
       }
   }
@@ -89,18 +90,18 @@ TEST_CASE("compliance between points is J C J^T, independent of earlier requests
 
 TEST_CASE("cached compliance is not read again until the tissue's revision changes", "[contact][point_compliance]") {
   CountingTissue tissue;
-  const ContactSamples samples(tissue.surface, 0.004);
+  const Candidates points(ContactSamples(tissue.surface, 0.004), nullptr, 8);
   PointCompliance compliance(8);
   const auto read = [&](int first) {
     tissue.reads = 0;
     compliance.begin_tick(tissue.compliance_revision());
     compliance.begin_rows();
     std::array<int, 4> slots;
-    for (int k = 0; k < 4; ++k) slots[static_cast<std::size_t>(k)] = compliance.slot_of(first + k, -1);
+    for (int k = 0; k < 4; ++k) slots[static_cast<std::size_t>(k)] = compliance.slot_of(tissue, points, first + k, -1);
     Matrix3 sum = Matrix3::Zero();
     for (int p : slots)
       for (int q : slots)
-        if (p >= q) sum += compliance(tissue, samples, p, q);
+        if (p >= q) sum += compliance(tissue, points, p, q);
     return sum;
   };
   const Matrix3 first = read(3);

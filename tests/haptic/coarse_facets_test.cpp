@@ -111,26 +111,6 @@ double hertz(double radius, double depth, double poisson_ratio = 0.3) {
 
 }  // namespace
 
-TEST_CASE("the local indentation increases with the force, and its inverse agrees", "[contact][coarse]") {
-  for (const double radius : {0.5e-3, 2e-3, 3e-3})
-    for (const double poisson_ratio : {0.0, 0.3, 0.4999}) {
-      const LocalIndentation law(radius, {cell, {1.1e4, poisson_ratio}});
-      REQUIRE(law.share() > 0.0);
-      double before = 0.0;
-      for (double force = 1e-9; force < 10.0; force *= 1.1) {
-        CAPTURE(radius, poisson_ratio, force);
-        const double depth = law.secant(force) * force;
-        CHECK(depth > before);
-        before = depth;
-        const double f = std::max(force, law.smallest_force()), rest = 0.01 / (1.1e4 * cell) + 1.0 / (1.1e4 * cell);
-        CHECK_THAT(law.force_of(rest, rest * f + law.depth(f)), WithinRel(f, 1e-9));
-      }
-    }
-  CHECK(LocalIndentation(0.6 * cell, {cell, {1e4, 0.3}}).share() == 0.0);
-  CHECK(LocalIndentation(0.4 * cell, {cell, {1e4, 0.3}}).share() == 1.0);
-  CHECK(LocalIndentation(0.1 * cell, {cell, {}}).share() == 0.0);
-}
-
 TEST_CASE("a sphere of a twelfth of a facet has the force of a refined mesh", "[haptic][coarse][extreme][D10]") {
   const double radius = 0.5e-3;
   const std::vector<double> depths{0.1 * radius, 0.25 * radius, 0.5 * radius, 0.75 * radius, radius};
@@ -144,17 +124,18 @@ TEST_CASE("a sphere of a twelfth of a facet has the force of a refined mesh", "[
       CAPTURE(depths[i], x, y);
       Tip tip(block, radius);
       const Vector3 force = tip.press(x, y, depths[i]);
-      CHECK_THAT(force[2], WithinRel(truth[i], 0.1));
+      CHECK_THAT(force[2], WithinRel(truth[i], 0.06));
       CHECK(force.head<2>().norm() <= 0.02 * force[2]);
-      CHECK(tip.status.has(StatusFlag::coarse_contact));
+      CHECK_FALSE(tip.status.has(StatusFlag::coarse_contact));
       // Rigid coupling: the tool is where the device is, in the dent.
       CHECK((tip.servo.proxy() - tip.state.position).norm() <= 1e-6 * radius);
     }
 }
 
-TEST_CASE("without the local compliance a small sphere is far too stiff, and the tick reports it", "[haptic][coarse]") {
+TEST_CASE("without points finer than facets a small sphere is far too stiff, and the tick reports it",
+          "[haptic][coarse]") {
   test::Pad block = coarse_block();
-  Tip tip(block, 0.5e-3, ServoOptions{.contact = {.local_compliance = false}});
+  Tip tip(block, 0.5e-3, ServoOptions{.contact = {.subfacet_compliance = false}});
   CHECK(tip.press(4e-3, 2e-3, 0.25e-3)[2] > 10.0 * hertz(0.5e-3, 0.25e-3));
   CHECK(tip.status.has(StatusFlag::coarse_contact));
 }
@@ -178,7 +159,7 @@ TEST_CASE("the force of a small sphere is continuous from the middle of a facet 
         before = force;
       }
       CHECK(change <= 0.02);
-      CHECK(least >= 0.8 * most);  // vertices are softer
+      CHECK(least >= 0.95 * most);
     }
 }
 
@@ -208,18 +189,6 @@ TEST_CASE("press and release return the work; a closed path makes no energy", "[
   CHECK(std::abs(work) <= (step > 0.0 ? 0.01 : 1e-3) * pressed);
 }
 
-TEST_CASE("a sphere of two facets is not changed by the local compliance, bit by bit", "[haptic][coarse]") {
-  test::Pad block = coarse_block();
-  const double radius = 2.0 * cell;
-  Tip with(block, radius), without(block, radius, ServoOptions{.contact = {.local_compliance = false}});
-  for (int i = 0; i <= 200; ++i) {
-    const double depth = 3e-3 * std::sin(pi * i / 200.0), x = 1e-5 * i;
-    const Vector3 a = with.tick(x, 2e-3, depth), b = without.tick(x, 2e-3, depth);
-    REQUIRE((a[0] == b[0] && a[1] == b[1] && a[2] == b[2]));
-    REQUIRE_FALSE(with.status.has(StatusFlag::coarse_contact));
-  }
-}
-
 TEST_CASE("friction of a small sphere reaches Coulomb's bound and keeps it over edges", "[haptic][coarse]") {
   test::Pad block = coarse_block();
   const double radius = 0.5e-3, friction = 0.3;
@@ -243,7 +212,7 @@ TEST_CASE("a tick of a small sphere does not allocate", "[haptic][coarse][rt]") 
   CHECK(scope.allocations() == 0);
 }
 
-TEST_CASE("tissue that changes the compliance of its surface is not given the local compliance of the unchanged one",
+TEST_CASE("tissue that changes the compliance of its surface is not given the half-space of the unchanged one",
           "[haptic][coarse]") {
   struct Softer : TissueAdaptor<test::Pad> {
     using TissueAdaptor::TissueAdaptor;

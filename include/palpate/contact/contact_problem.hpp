@@ -123,6 +123,7 @@ class ContactProblem {
   };
   BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
+  bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool) const noexcept;
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
   void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
                   const ContactTool& tool, ForceError& error) const noexcept;
@@ -148,7 +149,7 @@ class ContactProblem {
   std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
-  std::array<bool, maximum_tools> coarse_{};      // tools other than spheres on facets too coarse for a sphere
+  std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;

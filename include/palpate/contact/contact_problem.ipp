@@ -267,6 +267,21 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
+/// Whether a part of the force is at points that have only the compliance of the mesh, on facets that are too long to
+/// show the dent.
+PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
+                                                          const ContactTool& tool) const noexcept {
+  constexpr double coarse = 0.6, most = 0.1;  // radius per length; part of the force
+  double all = 0.0, on_coarse = 0.0;
+  for (int i = 0; i < rows_.count(); ++i) {
+    const Candidate& c = rows_.candidate(i);
+    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+    all += c.force;
+    if (!rows_.is_known(i) && tool.radius < coarse * surface.facet_length(c.triangle)) on_coarse += c.force;
+  }
+  return on_coarse > most * all;
+}
+
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
 /// large, theirs is: its force there is that on a half-space.
 PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body,
@@ -323,7 +338,7 @@ PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& 
 
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) noexcept {
-  coarse_[t] = false;
+  coarse_[t] = tool.active && presses_coarse_facets(tissue.contact_surface(), t, tool);
   if (!tool.active || !candidates_.has_any(static_cast<int>(t))) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
   const double force = tool.force.norm();

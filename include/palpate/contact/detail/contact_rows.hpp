@@ -39,6 +39,8 @@ class ContactRows {
   std::array<int, maximum_tools> count_pressing() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
   const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
+  /// Whether the half-space is known at the point of a row.
+  bool is_known(int row) const noexcept { return compliance_.half_space_point(candidate(row).slot).is_known(); }
   /// The area that the rows with force of every tool stand for [m^2].
   std::array<double, maximum_tools> pressing_area() const noexcept;
 

@@ -32,7 +32,7 @@ class ContactSamples {
 
   /// Neighbours of level 0 are at most `finest` [m] apart, as far as `maximum_subdivision` allows; there are levels up
   /// to a spacing of about `coarsest` [m]. Allocates; for set-up. O(samples x levels).
-  ContactSamples(const ContactSurface& surface, double finest, double coarsest);
+  ContactSamples(const ContactSurface& surface, double finest, double coarsest = 0.0);
 
   int count() const noexcept { return static_cast<int>(samples_.size()); }
   const ContactSample& operator[](int sample) const noexcept { return samples_[at(sample)]; }

@@ -268,7 +268,9 @@ class ContactSamples::Builder {
 PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double finest, double coarsest)
     : finest_(finest) {
   constexpr int most_levels = 40;
-  levels_ = std::clamp(static_cast<int>(std::ceil(2.0 * std::log2(coarsest / finest) - rounding)), 0, most_levels) + 1;
+  levels_ = std::clamp(static_cast<int>(std::ceil(2.0 * std::log2(std::max(coarsest, finest) / finest) - rounding)), 0,
+                       most_levels) +
+            1;
   Builder builder(*this, surface);
   builder.place();
   builder.choose_levels();

@@ -1,0 +1,102 @@
+// Rows for tools, and the level of their contact points.
+#include <palpate/contact/detail/point_levels.hpp>
+
+#include "contact/servo_session.hpp"
+
+#include "catch.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+using namespace palpate;
+
+namespace {
+
+using Counts = std::array<int, maximum_tools>;
+using Areas = std::array<double, maximum_tools>;
+constexpr double radius = 4e-3;
+
+ContactSamples plane_of_samples() {
+  test::Pad pad = test::make_pad("z1", 1e4, {16, 16, 2});
+  return {pad.contact_surface(), PointLevels::finest_spacing * radius, PointLevels::coarsest_spacing * radius};
+}
+
+/// A tick in which tools press parts of a plane with these areas, in so far as they have rows.
+Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity) {
+  Areas radii{};
+  for (std::size_t t = 0; t < maximum_tools; ++t)
+    if (areas[t] > 0.0) radii[t] = radius;
+  levels.begin_tick(samples, radii, capacity, true, 24);
+  Counts used{};
+  Areas pressed{};
+  for (std::size_t t = 0; t < maximum_tools; ++t) {
+    const int tool = static_cast<int>(t);
+    const double level = levels.level(tool);
+    // Between two levels there are the points of the lower one.
+    const double spacing = samples.spacing(std::floor(level));
+    const int points = static_cast<int>(areas[t] / (0.866 * spacing * spacing));
+    used[t] = std::min(points, levels.share(tool));
+    for (int i = used[t]; i < points; ++i) levels.note_left_out(tool, 1e-3);
+    pressed[t] = areas[t] * used[t] / std::max(1, points);
+  }
+  levels.end_tick(samples, used, pressed);
+  return used;
+}
+
+}  // namespace
+
+TEST_CASE("a press has about the wanted number of points at any size of its area", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  PointLevels levels;
+  for (double area = 1e-6; area < 3e-5; area *= 1.05) {
+    Counts used{};
+    for (int i = 0; i < 200; ++i) used = tick(levels, samples, {area}, 64);
+    if (levels.level(0) == 0.0) continue;  // first touch: fewer
+    CHECK(used[0] >= 20);
+    CHECK(used[0] <= 50);
+    CHECK(levels.deepest() == 0.0);
+  }
+  tick(levels, samples, {0.0}, 64);
+  CHECK(levels.level(0) == 0.0);
+}
+
+TEST_CASE("levels change in small steps", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  PointLevels levels;
+  double before = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    tick(levels, samples, {i < 200 ? 2e-5 : 4e-6}, 400);
+    CHECK(std::abs(levels.level(0) - before) <= 0.1 + 1e-12);
+    before = levels.level(0);
+  }
+}
+
+TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  PointLevels levels;
+  levels.begin_tick(samples, {radius}, 64, true, 24);
+  levels.start(samples, 0, 3e-5);
+  const double level = levels.level(0);
+  CHECK(level > 1.0);
+  for (int i = 0; i < 200; ++i) tick(levels, samples, {3e-5}, 64);
+  CHECK(std::abs(levels.level(0) - level) < 0.2);
+}
+
+TEST_CASE("rows are divided by need, and never more than there are", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  PointLevels levels;
+  const auto settle = [&](const Areas& areas) {
+    Counts used{};
+    for (int i = 0; i < 400; ++i) used = tick(levels, samples, areas, 100);
+    return used;
+  };
+  const Counts alone = settle({1e-5}), beside = settle({1e-5, 2e-5});
+  CHECK(levels.deepest() == 0.0);
+  CHECK(std::abs(alone[0] - beside[0]) <= 1);
+  Areas all{};
+  all.fill(2e-5);
+  const Counts many = settle(all);
+  CHECK(*std::min_element(many.begin(), many.end()) >= 5);
+  CHECK(std::accumulate(many.begin(), many.end(), 0) <= 100);
+  CHECK(levels.deepest() == 0.0);  // fewer points each, none without a row
+}
