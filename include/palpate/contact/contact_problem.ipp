@@ -532,7 +532,8 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   proxies_.look_ahead(tools, floor_);
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
   for (Candidate& c : candidates_.items()) {
-    if (c.row >= 0 || !may_have_row(c) || is_grasped(c)) continue;
+    const bool is_finer = !may_have_row(c);
+    if (c.row >= 0 || (is_finer && levels_.has_areas()) || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     const double reach = ahead.farthest + 2.0 * rows_.longest_path();
@@ -543,7 +544,10 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     double gap = c.gap + c.normal.dot(ahead.path - moved);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!(gap < -allowed)) continue;
-    violated_[at(violated_count_++)] = {gap, &c};
+    if (is_finer)
+      levels_.note_skipped(-gap);
+    else
+      violated_[at(violated_count_++)] = {gap, &c};
   }
   std::array<int, maximum_tools> own = rows_.count_by_tool();
   std::array<int, maximum_tools> wanted = own;

@@ -4,6 +4,7 @@
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/detail/contact_samples.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -24,6 +25,7 @@ class PointLevels {
   void begin_tick(const ContactSamples& samples, const std::array<double, maximum_tools>& radius, int capacity,
                   bool has_areas, int wanted) noexcept;
   int share(int tool) const noexcept { return share_[at(tool)]; }
+  bool has_areas() const noexcept { return has_areas_; }
   double level(int tool) const noexcept { return level_[at(tool)]; }
   /// The last level that has all points of a tool.
   int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
@@ -32,6 +34,8 @@ class PointLevels {
 
   /// Forgets the points noted before: those of the last round of a tick count.
   void begin_round() noexcept;
+  /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m].
+  void note_skipped(double penetration) noexcept { deepest_ = std::max(deepest_, penetration); }
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
   /// Sets the levels for the next tick. Per tool: rows with force, and the area that they stand for [m^2].
@@ -46,6 +50,7 @@ class PointLevels {
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
+  double step(const ContactSamples& samples, std::size_t tool, int used, double area) const noexcept;
   double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
 
   std::array<int, maximum_tools> share_{}, needed_{}, left_out_{};

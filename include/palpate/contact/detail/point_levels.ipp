@@ -50,8 +50,7 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
 
 /// Between two levels a tool has up to twice as many points as it would have at a level of that spacing.
 PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
-  const int most = std::max(1, share_[tool] / 2);
-  return has_areas_ ? std::min(wanted_, most) : most;
+  return std::min(wanted_, std::max(1, share_[tool] / 2));
 }
 
 /// The level at which an area has the wanted number of points, each the middle of a hexagon.
@@ -62,7 +61,7 @@ PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std:
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
-  if (area > 0.0) level_[at(tool)] = level_for(samples, at(tool), area);
+  if (has_areas_ && area > 0.0) level_[at(tool)] = level_for(samples, at(tool), area);
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -75,6 +74,15 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
   deepest_ = std::max(deepest_, penetration);
 }
 
+/// Without areas a level is whole, and another one only where rows are missing, or where there would be many left.
+PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size_t tool, int used,
+                                        double area) const noexcept {
+  constexpr double few = 0.4;  // of the rows
+  if (!has_areas_) return left_out_[tool] > 0 ? 1.0 : used < few * share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
+  const double wanted = level_for(samples, tool, area) - level_[tool];
+  return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
+}
+
 PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
                                           const std::array<double, maximum_tools>& area) noexcept {
   for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t];
@@ -84,8 +92,7 @@ PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const s
       level_[t] = 0.0;
       continue;
     }
-    const double step = level_for(samples, t, area[t]) - level_[t];
-    level_[t] += left_out_[t] > 0 ? std::max(1.0, step) : std::clamp(step, -longest_step, longest_step);
+    level_[t] += step(samples, t, used[t], area[t]);
   }
 }
 

@@ -66,7 +66,11 @@ class ForceErrorMeasurement {
   Place place_at(int vertex) const;
   std::optional<Spot> opposite_of(const SurfacePoint& point) const;
   double own_error(double depth) const;
-  FacetScale scale_at(int vertex) const;
+  /// Means over the triangles at a vertex.
+  struct Facets {
+    double length = 0.0, modulus = 0.0;  // [m], contact modulus [Pa]
+  };
+  Facets facets_at(int vertex) const;
   /// The points of a place on a surface with these positions of the vertices.
   template <class PositionOf>
   Positions points(const Place& place, PositionOf position) const;

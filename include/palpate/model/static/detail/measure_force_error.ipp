@@ -24,13 +24,13 @@ PALPATE_INLINE ForceErrorMeasurement::ForceErrorMeasurement(const ForceErrorSour
   if (places_.empty()) report_.remark = "the touchable surface has no vertex away from its rim and its supports";
 }
 
-PALPATE_INLINE FacetScale ForceErrorMeasurement::scale_at(int vertex) const {
-  FacetScale scale;
+PALPATE_INLINE ForceErrorMeasurement::Facets ForceErrorMeasurement::facets_at(int vertex) const {
+  Facets scale;
   const auto triangles = source_.surface.triangles_at(vertex);
   for (const int t : triangles) {
     const double share = 1.0 / static_cast<double>(triangles.size());
     scale.length += share * source_.surface.facet_length(t);
-    scale.material.modulus += share * source_.surface.material(t).modulus;
+    scale.modulus += share * source_.surface.material(t).modulus;
   }
   return scale;
 }
@@ -76,7 +76,7 @@ PALPATE_INLINE std::vector<int> ForceErrorMeasurement::inner_vertices() const {
     for (const SurfacePoint& p : rim)
       if (p.outward.dot(outward) > same_side)
         square = std::min(square, (p.position - surface.position(v)).squaredNorm());
-    if (std::sqrt(square) > source_.radius + scale_at(v).length) inner.push_back(v);
+    if (std::sqrt(square) > source_.radius + facets_at(v).length) inner.push_back(v);
     if (std::sqrt(square) > contact) nearer.push_back(v);
     if (square > largest) {
       largest = square;
@@ -132,12 +132,12 @@ PALPATE_INLINE ForceErrorMeasurement::Place ForceErrorMeasurement::place_at(int 
   const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
   std::nth_element(triangles.begin(), middle, triangles.end(),
                    [&](int a, int b) { return surface.facet_length(a) < surface.facet_length(b); });
-  const FacetScale scale = scale_at(vertex);
+  const Facets scale = facets_at(vertex);
   Place place;
   place.vertex = vertex;
   place.triangle = *middle;
   place.length = scale.length;
-  place.modulus = scale.material.modulus;
+  place.modulus = scale.modulus;
   if (!source_.pinched) return place;
   const Positions at_rest = points(place, [&](int v) -> Vector3 { return surface.position(v); });
   for (std::size_t p = 0; p < at_rest.size(); ++p) place.opposite[p] = opposite_of(at_rest[p]);
@@ -303,10 +303,10 @@ PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
 /// Missing depth at a place, position and depth, relative to the indentation; nothing where the sphere does not press.
 PALPATE_INLINE std::optional<double> ForceErrorMeasurement::relative_missing(const Place& place, std::size_t position,
                                                                              std::size_t depth) const {
-  const auto [force, indentation, local] = place.single.given[position][depth];
+  const double force = place.single.given[position][depth].force;
   const double truth = place.single.reference[position][depth].force * (1.0 + own_error(depths()[depth]));
   if (!(truth > 0.0) || !(force > 1e-3 * truth)) return std::nullopt;
-  return force / truth - 1.0 + local / indentation;
+  return force / truth - 1.0;
 }
 
 /// Places differ although their facets are of equal length: a part of the largest difference between a place and the
@@ -320,7 +320,7 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
   const std::vector<double> depth = depths();
   for (std::size_t p = 0; p < MissingDepth::positions; ++p)
     for (std::size_t i = 0; i < depth.size(); ++i) {
-      const auto [force, indentation, local] = place.single.given[p][i];
+      const auto [force, indentation] = place.single.given[p][i];
       const double own = own_error(depth[i]), truth = place.single.reference[p][i].force * (1.0 + own);
       const std::optional<double> relative = relative_missing(place, p, i);
       auto& levels = result.levels[p];
@@ -399,10 +399,10 @@ PALPATE_INLINE std::shared_ptr<const ForceAccuracy> ForceErrorMeasurement::take(
     };
     const auto place = std::min_element(places_.begin(), places_.end(),
                                         [&](const Place& a, const Place& b) { return distance(a) < distance(b); });
-    const FacetScale own = scale_at(v);
-    const bool known = own.material.modulus > 0.0 && place->modulus > 0.0;
+    const Facets own = facets_at(v);
+    const bool known = own.modulus > 0.0 && place->modulus > 0.0;
     vertices.push_back({static_cast<int>(place - places_.begin()), own.length > 0.0 ? own.length : place->length,
-                        known ? place->modulus / own.material.modulus : 1.0});
+                        known ? place->modulus / own.modulus : 1.0});
   }
   return std::make_shared<const ForceAccuracy>(source_.radius, std::move(errors), std::move(vertices));
 }

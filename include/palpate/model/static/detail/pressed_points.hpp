@@ -14,9 +14,9 @@ struct SurfacePoint {
   Vector3 outward = Vector3::Zero();
 };
 
-/// Force along `outward` [N], and HapticServo::indentation and local_indentation [m].
+/// Force along `outward` [N], and HapticServo::indentation [m].
 struct PressedPoint {
-  double force = 0.0, indentation = 0.0, local = 0.0;
+  double force = 0.0, indentation = 0.0;
 };
 
 /// Options of a servo that follows its device exactly; `capacity` of contacts, 0: the default.
