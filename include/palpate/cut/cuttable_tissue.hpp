@@ -186,6 +186,7 @@ class CuttableTissue : public ModelBase {
   double compliance_floor() const noexcept { return view().floor; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
+  NoHook vertex_rotation(int) const noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
   void report_failed(bool failed) noexcept { served_.report_failed(failed); }
