@@ -39,7 +39,7 @@ class ModelOf final : public AnyModel {
   Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
   void prefetch(std::span<const int> vertices) noexcept override { model_.prefetch(vertices); }
   Matrix3 vertex_rotation(int v) const noexcept override {
-    return TissueView(const_cast<Model&>(model_)).vertex_rotation(v);
+    return TissueView(const_cast<HapticFEModel<Tet4, LinearElastic, Policy>&>(model_)).vertex_rotation(v);
   }
   Matrix3 compliance(int i, int j) const noexcept override { return model_.compliance(i, j); }
   double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }

@@ -4,6 +4,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/local/detail/split_elasticity.hpp>
+#include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/detail/half_space_source.hpp>
 
 #include <span>
