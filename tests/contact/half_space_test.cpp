@@ -152,16 +152,31 @@ TEST_CASE("the self compliance is that of a disc under uniform traction", "[cont
 }
 
 TEST_CASE("the support of the compliance of a half-space ends smoothly", "[contact][half_space]") {
-  const auto support = [](double r) { return half_space_support(r, 0.5, 1.5); };
-  CHECK(support(0.0) == 1.0);
+  const auto support = [](double r, double angle = 0.0) {
+    HalfSpacePoint p = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3), q = p;
+    q.position[0] = r;
+    q.normal = Vector3(std::sin(angle), 0.0, std::cos(angle));
+    p.length = 0.5;
+    q.length = 1.5;
+    CHECK(half_space_support(p, q) == half_space_support(q, p));
+    return half_space_support(p, q);
+  };
   CHECK(support(2.0) == 1.0);
   CHECK_THAT(support(3.0), WithinRel(0.5, 1e-15));
   CHECK(support(4.0) == 0.0);
-  CHECK(half_space_support(3.1, 0.5, 1.5) == half_space_support(3.1, 1.5, 0.5));
+  CHECK(support(1.0, 0.49 * pi) == 1.0);
+  CHECK(support(1.0, pi) == 0.0);
   const double h = 1e-4;
   for (const double r : {2.0, 4.0}) {
     CHECK_THAT((support(r + h) - support(r - h)) / h, WithinAbs(0.0, 1e-6));
     CHECK_THAT((support(r + h) - 2.0 * support(r) + support(r - h)) / (h * h), WithinAbs(0.0, 1e-2));
   }
   for (double r = 2.0; r < 4.0; r += 0.01) CHECK(support(r + 0.01) <= support(r));
+}
+
+TEST_CASE("the two sides of a slit have no compliance of a half-space between them", "[contact][half_space]") {
+  const HalfSpacePoint up = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3);
+  const HalfSpacePoint down = point(Vector3(0.0, 0.0, 1e-12), -Vector3::UnitZ(), 1.0, 0.3);
+  CHECK(supported_compliance(up, down) == Matrix3::Zero());
+  CHECK(supported_compliance(up, up) == Matrix3::Zero());  // its own is half_space_self_compliance
 }

@@ -53,15 +53,26 @@ inline Matrix3 half_space_self_compliance(const HalfSpacePoint& p, double area) 
   return tangential * Matrix3::Identity() + (normal - tangential) * (p.normal * p.normal.transpose());
 }
 
-/// How much of half_space_compliance counts at a distance [m], for two points with edges of these lengths: 1 up to
-/// twice their mean length, 0 from four times that on, twice continuously differentiable between. Points that are far
-/// apart have the compliance of the mesh, which shows that well.
-PALPATE_ALWAYS_INLINE double half_space_support(double distance, double length_p, double length_q) noexcept {
-  const double t = distance / (length_p + length_q) - 1.0;  // 0 at two mean lengths, 1 at four
-  if (t <= 0.0) return 1.0;
-  if (!(t < 1.0)) return 0.0;
-  const double rest = 1.0 - t;
-  return rest * rest * rest * (1.0 + t * (3.0 + 6.0 * t));
+/// How much of half_space_compliance counts between two points. By distance: 1 up to twice the mean length of their
+/// edges, 0 from four times that on, because the mesh itself shows well what points do that are far apart. By
+/// direction: 1 where the normals are less than a right angle apart, 0 from 120 degrees on, so that the two sides of a
+/// slit or of a thin fold have nothing of each other. Twice continuously differentiable, symmetric.
+PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  const auto step = [](double t) noexcept {  // from 1 at t = 0 to 0 at t = 1
+    const double rest = 1.0 - t;
+    return t <= 0.0 ? 1.0 : !(t < 1.0) ? 0.0 : rest * rest * rest * (1.0 + t * (3.0 + 6.0 * t));
+  };
+  const double near = step((p.position - q.position).norm() / (p.length + q.length) - 1.0);
+  return near > 0.0 ? near * step(-2.0 * p.normal.dot(q.normal)) : 0.0;
+}
+
+/// Both together: what is added to the compliance of the mesh between two points. Zero for points at the same place.
+inline Matrix3 supported_compliance(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  constexpr double same_place = 1e-9;
+  const double support = half_space_support(p, q);
+  if (!(support > 0.0) || !((p.position - q.position).norm() > same_place * (p.length + q.length)))
+    return Matrix3::Zero();
+  return support * half_space_compliance(p, q);
 }
 
 }}  // namespace palpate
