@@ -90,6 +90,9 @@ TEST_CASE("the fields of a half-space are in equilibrium", "[contact][half_space
       force += (field.traction(at.offset + h, Vector3::Unit(m)) - before) / (2.0 * step);
       largest = largest.cwiseMax(before.cwiseAbs());
     }
+    Vector3 mean = Vector3::Zero();
+    for (int m = 0; m < 3; ++m) mean += field.traction(at.offset, Vector3::Unit(m)).row(m).transpose() / 3.0;
+    CHECK((field.mean_stress(at.offset) - mean).norm() <= 1e-12 * largest.maxCoeff());
     CHECK(force.cwiseAbs().maxCoeff() <= 1e-4 * largest.maxCoeff());
     const Vector3 on_plane = at.offset - at.normal.dot(at.offset) * at.normal;
     CHECK(field.traction(on_plane, at.normal).cwiseAbs().maxCoeff() <= 1e-11 / on_plane.squaredNorm());

@@ -27,6 +27,29 @@ std::vector<VertexMaterial> vertex_materials(std::span<const NodeId> touched, co
                                              std::span<const Matrix6> elasticities, std::span<const int> material_of,
                                              std::vector<double>& ratios);
 
+/// The domains of an element with smoothed strain; none for others. O(elements), throws as StrainDomains.
+template <Element E>
+VolumeDomains volume_domains([[maybe_unused]] const Body<E>& body, [[maybe_unused]] const NodeElements& around,
+                             [[maybe_unused]] const SetupLimits& limits) {
+  VolumeDomains result;
+  if constexpr (HasSmoothedStrain<E>) {
+    std::vector<std::array<NodeId, 1>> middles;
+    const StrainDomains<E> domains(body.mesh, around, limits);
+    result.first.push_back(0);
+    for (Index d = 0; d < domains.size(); ++d) {
+      const StrainDomain domain = domains[d];
+      if (domain.part != StrainPart::volumetric) continue;
+      middles.push_back({domain.ends[1]});
+      result.volume.push_back(domain.volume);
+      result.node.insert(result.node.end(), domain.nodes.begin(), domain.nodes.end());
+      result.gradient.insert(result.gradient.end(), domain.gradients.begin(), domain.gradients.end());
+      result.first.push_back(static_cast<Index>(result.node.size()));
+    }
+    result.of_node = detail::lists_of(middles, body.mesh.node_count());
+  }
+  return result;
+}
+
 /// The table of a body with its own elements, whatever its solver. `boundary` are its boundary faces, `touched` the
 /// ascending nodes of its vertices, `constrained` the prescribed components per node. `own` is the assembled stiffness
 /// of the body, or null; it is used where the body is of one isotropic material, and others are assembled. Throws as
@@ -50,8 +73,9 @@ ProjectedHalfSpace project_half_space(const Body<E>& body, const std::vector<Bou
   }
   const BoundaryNodes nodes(mesh_ref(body.mesh), boundary);
   const ElementFaceRules rules = element_face_rules<E>();
+  const VolumeDomains domains = volume_domains(body, around, limits);
   return project_half_space(HalfSpaceSource{mesh_ref(body.mesh), around, nodes, rules, touched, materials, constrained,
-                                            stiffness, E::order > 1 ? 2 : 3},
+                                            stiffness, domains, E::order > 1 ? 2 : 3},
                             limits);
 }
 
