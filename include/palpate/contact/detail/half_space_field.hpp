@@ -27,6 +27,8 @@ class HalfSpaceField {
   /// Traction on a face with this unit normal, per force [1/m^2]. Finite at nu = 0.5, as the pressure is in closed
   /// form.
   Matrix3 traction(const Vector3& offset, const Vector3& face_normal) const noexcept;
+  /// Mean of the three normal stresses, for a force along x, y and z [1/m^2]; does not depend on the normal.
+  Vector3 mean_stress(const Vector3& offset) const noexcept;
 
  private:
   struct Lengths {

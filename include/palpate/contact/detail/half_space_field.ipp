@@ -74,4 +74,9 @@ PALPATE_INLINE Matrix3 HalfSpaceField::traction(const Vector3& offset, const Vec
   return f;
 }
 
+PALPATE_INLINE Vector3 HalfSpaceField::mean_stress(const Vector3& offset) const noexcept {
+  const double r = offset.norm();
+  return -(1.0 + nu_) / (3.0 * std::numbers::pi * r * r * r) * offset;
+}
+
 }}  // namespace palpate

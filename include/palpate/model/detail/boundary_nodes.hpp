@@ -6,6 +6,7 @@
 #include <palpate/mesh/surface.hpp>
 
 #include <array>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,28 @@ struct NodeLists {
     return {item.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
   }
 };
+
+namespace detail {
+
+/// Lists for every node the numbers of the items that contain it.
+template <class Items>
+NodeLists lists_of(const Items& items, Index nodes) {
+  NodeLists lists;
+  lists.first.assign(static_cast<std::size_t>(nodes) + 1, 0);
+  for (const auto& item : items)
+    for (const NodeId n : item) ++lists.first[static_cast<std::size_t>(n) + 1];
+  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+  lists.item.resize(static_cast<std::size_t>(lists.first.back()));
+  std::vector<Index> next(lists.first.begin(), lists.first.end() - 1);
+  int number = 0;
+  for (const auto& item : items) {
+    for (const NodeId n : item) lists.item[static_cast<std::size_t>(next[static_cast<std::size_t>(n)]++)] = number;
+    ++number;
+  }
+  return lists;
+}
+
+}  // namespace detail
 
 /// Faces, triangles, normal and scale of the boundary at every node. Nodes inside the body have none. O(faces),
 /// allocates.

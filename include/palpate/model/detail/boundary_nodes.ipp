@@ -5,31 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
-
-/// Lists for every node the numbers of the items that contain it.
-template <class Items>
-NodeLists lists_of(const Items& items, Index nodes) {
-  NodeLists lists;
-  lists.first.assign(static_cast<std::size_t>(nodes) + 1, 0);
-  for (const auto& item : items)
-    for (const NodeId n : item) ++lists.first[static_cast<std::size_t>(n) + 1];
-  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
-  lists.item.resize(static_cast<std::size_t>(lists.first.back()));
-  std::vector<Index> next(lists.first.begin(), lists.first.end() - 1);
-  int number = 0;
-  for (const auto& item : items) {
-    for (const NodeId n : item) lists.item[static_cast<std::size_t>(next[static_cast<std::size_t>(n)]++)] = number;
-    ++number;
-  }
-  return lists;
-}
-
-}  // namespace detail
 
 PALPATE_INLINE BoundaryNodes::BoundaryNodes(const MeshRef& mesh, const std::vector<BoundaryFace>& faces)
     : positions_(mesh.positions), faces_(&faces), sharp_(static_cast<std::size_t>(mesh.node_count), false) {

@@ -24,6 +24,18 @@ struct VertexMaterial {
   HalfSpaceMarks marks{};                           ///< several_materials, anisotropic
 };
 
+/// Parts of a body over which an element averages its change of volume, sum g_a . u_a, numbered by the node in their
+/// middle. Empty for elements that do not.
+struct VolumeDomains {
+  NodeLists of_node;           ///< numbers of the domains around every node, one per region
+  std::vector<double> volume;  ///< [m^3]
+  std::vector<Index> first;    ///< of the nodes of every domain, one past the end last
+  std::vector<NodeId> node;
+  std::vector<Vector3> gradient;  ///< g [1/m]
+
+  bool empty() const noexcept { return volume.empty(); }
+};
+
 /// Refers to its parts, which must outlive it.
 struct HalfSpaceSource {
   MeshRef mesh;
@@ -34,6 +46,7 @@ struct HalfSpaceSource {
   std::span<const VertexMaterial> materials;  ///< of every vertex
   std::span<const std::uint8_t> constrained;  ///< per node, bit c set when component c is prescribed
   std::span<const UniformStiffness> stiffness;
+  const VolumeDomains& domains;
   int layers = 3;  ///< elements of a patch, counted from its vertex
 
   Vector3 position(NodeId node) const noexcept { return boundary.position(node); }

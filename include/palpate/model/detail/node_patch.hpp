@@ -22,6 +22,8 @@ class NodePatch {
   void find(NodeId middle, const Vector3& normal);
 
   NodeId middle() const noexcept { return middle_; }
+  /// All nodes of the elements.
+  std::span<const NodeId> nodes() const noexcept { return nodes_; }
   std::span<const NodeId> free() const noexcept { return free_; }
   /// Number of a node among the free ones, or -1.
   int place(NodeId node) const noexcept { return place_[static_cast<std::size_t>(node)]; }

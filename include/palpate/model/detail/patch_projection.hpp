@@ -45,6 +45,8 @@ class PatchProjection {
 
  private:
   void assemble(const UniformStiffness& stiffness, const HalfSpaceField& field);
+  void release_cut_domains(const UniformStiffness& stiffness, const HalfSpaceField& field);
+  void release(int domain, double bulk, const Vector3& mean_stress, const HalfSpaceField& field);
   bool solve_dense();
   const Matrix3& boundary_value(NodeId node, const HalfSpaceField& field);
 

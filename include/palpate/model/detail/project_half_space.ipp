@@ -34,12 +34,18 @@ struct EquivalentMaterial {
   bool anisotropic = false;
 };
 
-/// Of every matrix; adds to `ratios` what differs from all in it.
+/// Of every matrix that is used; adds to `ratios` what differs from all in it.
 inline std::vector<EquivalentMaterial> equivalent_materials(std::span<const Matrix6> elasticities,
+                                                            const std::vector<bool>& used,
                                                             std::vector<double>& ratios) {
   constexpr double same_ratio = 1e-6, largest_ratio = 0.49999, anisotropic = 0.05;
   std::vector<EquivalentMaterial> materials;
-  for (const Matrix6& d : elasticities) {
+  for (std::size_t m = 0; m < elasticities.size(); ++m) {
+    const Matrix6& d = elasticities[m];
+    if (!used[m]) {
+      materials.emplace_back();
+      continue;
+    }
     const double nu = std::min(equivalent_poisson_ratio(d), largest_ratio);
     auto known = std::ranges::find_if(ratios, [&](double r) { return std::abs(r - nu) <= same_ratio; });
     if (known == ratios.end()) known = ratios.insert(known, nu);
@@ -224,7 +230,11 @@ PALPATE_INLINE std::vector<VertexMaterial> vertex_materials(std::span<const Node
                                                             std::span<const Matrix6> elasticities,
                                                             std::span<const int> material_of,
                                                             std::vector<double>& ratios) {
-  const auto materials = detail::equivalent_materials(elasticities, ratios);
+  std::vector<bool> used(elasticities.size(), false);
+  for (const NodeId node : touched)
+    for (const NodeId e : around.of(node))
+      used[static_cast<std::size_t>(material_of[static_cast<std::size_t>(e)])] = true;
+  const auto materials = detail::equivalent_materials(elasticities, used, ratios);
   std::vector<int> votes(ratios.size());
   std::vector<VertexMaterial> result;
   for (const NodeId node : touched) {
