@@ -7,6 +7,8 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
+#include <cmath>
+
 #include "catch.hpp"
 
 using namespace palpate;
@@ -53,6 +55,36 @@ TEST_CASE("a blade opens the tissue that it is pushed into, with a rendered forc
   CHECK(servo.blade()->area() > 0.0);
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(tissue.contact_surface().vertex_count() > vertices);
+}
+
+TEST_CASE("a blade in its own slit along a plane of the mesh has the force of its whole length", "[cut][blade]") {
+  for (const double angle : {0.0, 0.7, 2.1}) {
+    // In the planes of the mesh at a third of the length, near one, and between two.
+    for (const double x : {0.02, 0.02 + 1e-12, 0.02 - 1e-7, 0.0235}) {
+      SlicedBlock tissue;
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.linear() = Eigen::AngleAxisd(angle, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+      pose.translation() = angle * Vector3(0.1, -0.2, 0.3);
+      tissue.set_pose(pose);
+      BladeTool blade = long_blade;
+      blade.edge = pose.linear() * blade.edge;
+      HapticServo servo(tissue, blade);
+      int wrong = 0;
+      for (int i = 0; i < 600; ++i) {
+        const double z = 0.032 - 5e-5 * i;
+        ToolState s;
+        s.position = pose * Vector3(x, 0.02, z);
+        s.time = 1e-3 * i;
+        servo.tick(s);
+        const double stretch = 40.0 * 0.04 / 500.0;  // of the coupling when the edge begins to cut
+        if (z < 0.0299 - stretch) wrong += std::abs(servo.contact_force().norm() - 40.0 * 0.04) > 0.01;
+        if (i % 8 == 0) tissue.process_cuts();
+      }
+      INFO("at " << x << " m, rotated by " << angle);
+      CHECK(tissue.cut_report().cuts > 4);
+      CHECK(wrong == 0);
+    }
+  }
 }
 
 TEST_CASE("a blade alone follows a session with another tool", "[cut][blade]") {
@@ -152,4 +184,25 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   CHECK(blade.area() > area + 0.04 * 0.008);
   CHECK(blade.work() == Catch::Approx(50.0 * blade.area()));
   CHECK(most < threshold * 1.001);
+}
+
+TEST_CASE("a sweep of an edge along itself opens no faces, also where rounding gives it an area", "[cut][blade]") {
+  // Centres of elements are on lines along the edge.
+  const Mesh<Tet4> mesh = box_tet4({0.07, 0.01, 0.01}, {7, 1, 1}, BoxSplit::five_mirrored);
+  for (int k = 0; k < 40; ++k) {
+    Cut tissue(mesh, Scene().fix("x0").touch("surface"),
+               {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0});
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = Eigen::AngleAxisd(0.3 * k, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    pose.translation() = k * Vector3(0.1, -0.2, 0.3);
+    tissue.set_pose(pose);
+    tissue.begin_tick();
+    const auto at = [&](double x) { return Vector3(pose * Vector3(x, 0.0071, 0.0062)); };
+    for (int i = 0; i < 10; ++i) {
+      const double x = 0.02 + 2.5e-3 * i;
+      tissue.try_cut({at(x), at(x + 0.03), at(x + 2.5e-3), at(x + 0.0325)});
+    }
+    while (tissue.process_cuts()) {}
+    CHECK(tissue.cut_report().cuts == 0);
+  }
 }

@@ -131,8 +131,10 @@ class ContactSurface {
   double distance_of_body(const Vector3& p) const noexcept;
   /// Whether a point is inside the closed boundary; without a shell, whether it is behind the touchable surface.
   bool is_inside(const Vector3& p) const noexcept { return distance_of_body(p) < 0.0; }
-  /// Whether the boundary that decides about inside and outside has no rim.
-  bool is_closed() const noexcept { return body_.empty() ? !has_rim_ : !body_.front().has_rim_; }
+  /// The boundary that decides about inside and outside: with the shell if there is one.
+  const ContactSurface& boundary() const noexcept { return body_.empty() ? *this : body_.front(); }
+  /// Whether the boundary has no rim.
+  bool is_closed() const noexcept { return !boundary().has_rim_; }
   /// Whether an edge or vertex of a triangle is on the rim of the touchable surface.
   bool is_rim(int t, TriangleFeature feature) const noexcept;
   /// Whether a vertex is on the rim of the touchable surface.

@@ -1,4 +1,4 @@
-// Whether the edge of a blade is in tissue.
+// How much of the edge of a blade is in tissue.
 #pragma once
 
 #include <palpate/contact/contact_surface.hpp>
@@ -7,10 +7,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// As ContactSurface::is_inside, also beside a closed slit. Its two walls are in the same place, or overlap where the
-/// tissue is pressed together, so that a point in the tissue behind one wall may be nearest to the front of the other.
-/// `reach` [m]: of the overlap, less than the thickness of the tissue.
-bool is_in_tissue(const ContactSurface& surface, const Vector3& p, double reach) noexcept;
+/// Length of the part of the edge from a to b that is in tissue [m]; frame of the surface. Every crossing of a line
+/// with a closed boundary enters or leaves tissue, and tissue is where more were entered than left. So two walls of a
+/// closed slit cancel, rounding moves the ends of the parts by no more than itself, and tissue that is pressed into
+/// tissue counts once. Beside an open surface: where points are behind it, between 9 points of the edge by bisection;
+/// `reach` [m]: of the walls of a slit that are pressed into each other. O(log triangles + triangles near the line).
+double length_in_tissue(const ContactSurface& surface, const Vector3& a, const Vector3& b, double reach) noexcept;
 
 }}  // namespace palpate
 

@@ -24,14 +24,15 @@ namespace palpate { inline namespace PALPATE_ABI {
 template <Element E, class Position>
 std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
   std::vector<ElementFace> open;
-  if (!(sweep.area() > 0.0)) return open;
+  const Box near = sweep.box();
+  constexpr double rounding = 1e-10;  // of an edge that moves along itself: the plane of such a sweep is arbitrary
+  if (!(sweep.area() > rounding * near.size().squaredNorm())) return open;
   const Mesh<E>& mesh = topology.mesh();
   const auto centre = [&](Index e) {
     Vector3 sum = Vector3::Zero();
     for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
     return Vector3(sum / E::nodes);
   };
-  const Box near = sweep.box();
   for (Index e = 0; e < mesh.element_count(); ++e) {
     if (topology.is_removed(e)) continue;
     Box own;

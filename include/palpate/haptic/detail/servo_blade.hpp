@@ -26,10 +26,6 @@ class ServoBlade {
   const BladeCut& cut() const noexcept { return cut_; }
 
  private:
-  static constexpr int intervals = 8;   // along the edge
-  static constexpr int bisections = 7;  // of an interval in which the edge leaves the tissue
-  static constexpr int most_ends = 4;   // that are found by bisection; at others half of the interval counts
-
   double width_inside(const TissueView& tissue) const noexcept;
   bool order_cut(const Vector3& to, const TissueView& tissue, double least) noexcept;
 

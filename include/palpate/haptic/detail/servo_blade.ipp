@@ -32,35 +32,12 @@ PALPATE_INLINE void ServoBlade::reset() noexcept {
   status_ = {};
 }
 
-/// Length of the edge in tissue [m]. Between two points of the edge of which one is in tissue, where it leaves the
-/// tissue is found by bisection: the force has no steps while the edge comes in sideways.
+/// Length of the edge in tissue [m].
 PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const noexcept {
-  const Vector3& edge = cut_.tool().edge;
   const Eigen::Isometry3d to_model = inverse(tissue.to_world());
-  const auto is_inside = [&](double part) {
-    const Vector3 x = cut_.edge() + (part - 0.5) * edge;
-    return is_in_tissue(tissue.contact_surface(), to_model * x, cut_.tool().cut_spacing);
-  };
-  double inside = 0.0;
-  int left = most_ends;
-  bool before = is_inside(0.0);
-  for (int k = 1; k <= intervals; ++k) {
-    const double start = (k - 1.0) / intervals;
-    const bool now = is_inside(static_cast<double>(k) / intervals);
-    if (before && now) inside += 1.0 / intervals;
-    if (before != now) {
-      double from = 0.0, to = 1.0;  // of the interval; `from` is as its start
-      for (int i = 0; i < bisections && left > 0; ++i) {
-        const double middle = 0.5 * (from + to);
-        (is_inside(start + middle / intervals) == before ? from : to) = middle;
-      }
-      --left;
-      const double part = 0.5 * (from + to);
-      inside += (before ? part : 1.0 - part) / intervals;
-    }
-    before = now;
-  }
-  return edge.norm() * inside;
+  const Vector3 half = 0.5 * cut_.tool().edge;
+  return length_in_tissue(tissue.contact_surface(), to_model * (cut_.edge() - half), to_model * (cut_.edge() + half),
+                          cut_.tool().cut_spacing);
 }
 
 /// Requests a cut along the surface swept since the last request to an edge at `to`, unless its path is shorter than
