@@ -189,6 +189,26 @@ TEST_CASE("press and release return the work; a closed path makes no energy", "[
   CHECK(std::abs(work) <= (step > 0.0 ? 0.01 : 1e-3) * pressed);
 }
 
+TEST_CASE("facets that make the force of a sphere wrong by more than a tenth are flagged where nothing was measured",
+          "[haptic][coarse]") {
+  int wrong = 0;
+  for (const double radius : {cell, 1.5 * cell, 2.0 * cell}) {
+    const std::vector<double> depths{0.125 * radius, 0.25 * radius};
+    const std::vector<double> truth = refined(radius, 0.3, depths);  // no such flag there
+    test::Pad block = coarse_block();
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      CHECK_THAT(Tip(block, radius).press(0.0, 0.0, depths[i])[2], WithinRel(truth[i], 0.06));
+      Tip tip(block, radius, ServoOptions{.contact = {.subfacet_compliance = false}});
+      const double force = tip.press(0.0, 0.0, depths[i])[2];
+      CAPTURE(radius, depths[i], force, truth[i]);
+      if (std::abs(force - truth[i]) < 0.1 * truth[i]) continue;
+      ++wrong;
+      CHECK(tip.status.has(StatusFlag::coarse_contact));
+    }
+  }
+  CHECK(wrong > 3);
+}
+
 TEST_CASE("friction of a small sphere reaches Coulomb's bound and keeps it over edges", "[haptic][coarse]") {
   test::Pad block = coarse_block();
   const double radius = 0.5e-3, friction = 0.3;

@@ -90,10 +90,10 @@ class ContactProblem {
   };
   /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
   static constexpr int vertices_per_contact = 12;
-  static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
-  static constexpr int added_per_round = 16;  // rows, those of deepest penetration
-  static constexpr double unsettled = 0.05;   // relative change of force that is left and is flagged
-  static constexpr double growing = 0.005;    // the same where a change is larger than the one before
+  static constexpr int maximum_rounds = 12;              // solutions of the contact problem per tick
+  static constexpr int added_per_round = 16;             // rows, those of deepest penetration
+  static constexpr double unsettled = 0.05;              // relative change of force that is left and is flagged
+  static constexpr double growing = 0.005;               // the same where a change is larger than the one before
   static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
   static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation
@@ -124,18 +124,21 @@ class ContactProblem {
   };
   BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
-  bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool) const noexcept;
+  bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
+                             bool measured) const noexcept;
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
   void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
                   const ContactTool& tool, ForceError& error) const noexcept;
-  bool is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
-                            std::size_t t, const ContactTool& tool) const noexcept;
+  double error_of_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
+                         std::size_t t, const ContactTool& tool) const noexcept;
+  inline static double distance_from_support(const LinearModelError& model, const Contact& c) noexcept;
   void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
                         std::size_t t, SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
+  void note_forces_of_lifted(Tools tools) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
 
@@ -155,6 +158,7 @@ class ContactProblem {
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
+  double of_lifted_ = 0.0;  // forces of tools that are gone, which are still on the tissue [N]
   double floor_ = 0.0;
 };
 

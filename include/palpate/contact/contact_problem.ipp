@@ -118,6 +118,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   floor_ = tissue.compliance_floor();
   rounds_left_ = maximum_rounds;
   status |= tissue.require_columns({});  // before the revision is read
+  note_forces_of_lifted(tools);
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
@@ -152,15 +153,23 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.stick(tools);
   levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area());
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation)
+  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation ||
+      of_lifted_ > parameters_.force_tolerance * rows_.largest_force_scale(tools))
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, rest <= unsettled);
   return status;
 }
 
-/// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get smaller
-/// by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not stable:
-/// rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
+/// A tool that is gone, or restarts elsewhere, has no force any more. Where the linearisations go a part of their step
+/// the tissue keeps a part of it.
+PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept {
+  for (const Contact& c : rows_.contacts())
+    if (tools[at(c.tool)].force.squaredNorm() == 0.0) of_lifted_ += c.total().norm();
+}
+
+/// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
+/// smaller by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not
+/// stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
 PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
   if (rest == infinity || (change >= before && change > growing)) return infinity;
   return change < before ? std::max(change, change * change / (before - change)) : change;
@@ -250,6 +259,13 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
   return own;
 }
 
+/// Of a contact point, from the distances of the vertices around it [m].
+inline double ContactProblem::distance_from_support(const LinearModelError& model, const Contact& c) noexcept {
+  double distance = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) distance += c.weights[a] * model.supports[at(c.vertices[a])];
+  return distance;
+}
+
 /// The strain follows from the force on a fine mesh. Where columns or rows are missing the force is too small: all of
 /// the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
@@ -268,7 +284,9 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
         sphere.poisson_ratio = material.poisson_ratio;
       }
     }
-    sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
+    // At a fixed point the support carries the force, and no tissue is strained.
+    if (const double support = distance_from_support(model, c); support > 0.0)
+      sphere.support = std::min(sphere.support, support);
     sum += std::abs(c.force) + c.friction.norm();
   }
   parts.storage += model.storage * sum * sum / sphere.depth;
@@ -277,29 +295,30 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
-/// Whether a part of the force is at points that have only the compliance of the mesh, on facets that are too long to
-/// show the dent.
+/// Whether a part of the force is at points that have only the compliance of the mesh, on facets that are too long: for
+/// the dent of the tool, or, where no error was measured, for the radius of the contact.
 PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
-                                                          const ContactTool& tool) const noexcept {
-  constexpr double coarse = 0.6, most = 0.1;  // radius per length; part of the force
-  double all = 0.0, on_coarse = 0.0;
+                                                          const ContactTool& tool, bool measured) const noexcept {
+  constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
+  const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
+  double longest = tool.radius / coarse, all = 0.0, on_coarse = 0.0;
+  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
   for (int i = 0; i < rows_.count(); ++i) {
     const Candidate& c = rows_.candidate(i);
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
-    if (!rows_.is_known(i) && tool.radius < coarse * surface.facet_length(c.triangle)) on_coarse += c.force;
+    if (!rows_.is_known(i) && surface.facet_length(c.triangle) > longest) on_coarse += c.force;
   }
   return on_coarse > most * all;
 }
 
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
-/// large, theirs is: its force there is that on a half-space.
-PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body,
-                                                         const BodyContacts& contacts, std::size_t t,
-                                                         const ContactTool& tool) const noexcept {
-  if (body.accuracy == nullptr || !(tool.half_length > 0.0)) return false;
+/// large, theirs is: its force there is that on a half-space. Relative to the force; infinite if not known.
+PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const KnownErrors& body,
+                                                      const BodyContacts& contacts, std::size_t t,
+                                                      const ContactTool& tool) const noexcept {
   const auto own = std::ranges::find(contacts.rows, static_cast<int>(t), &Contact::tool);
-  if (own == contacts.rows.end()) return false;
+  if (body.accuracy == nullptr || own == contacts.rows.end()) return infinity;
   const int vertex = body.first + own->vertices[0];
   const double modulus = surface.material(surface.triangles_at(vertex).front()).modulus;
   const double depth = std::min(contacts.depth, tool.radius),
@@ -308,7 +327,7 @@ PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& s
   sphere.half_length = 0.0;
   sphere.force = Vector3(0.0, 0.0, force);
   const double bound = body.accuracy->error(sphere, static_cast<int>(t), contacts.rows, depth).bound;
-  return bound > coarse_error * force && bound < infinity;
+  return bound > 0.0 ? bound / force : 0.0;
 }
 
 /// The bounds add up. The expected error counts as far as it is along the force of the tool.
@@ -348,22 +367,27 @@ PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& 
 
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) noexcept {
-  coarse_[t] = tool.active && presses_coarse_facets(tissue.contact_surface(), t, tool);
+  coarse_[t] = false;
   if (!tool.active || !candidates_.has_any(static_cast<int>(t))) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
   const double force = tool.force.norm();
   if (!(force > 0.0)) return error_without_force(tissue, tool);
   ForceError error{0.0, 0.0, force, {0.0}};
-  bool pressed = false;
+  bool pressed = false, measured = true;
   for (int b = 0; b < surface.body_count(); ++b) {
     KnownErrors body = surface.known_errors(b);
     if (!tissue.has_contact_materials()) body = {body.first, body.end};
     const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
     if (!(contacts.scale > 0.0)) continue;
     pressed = true;
-    coarse_[t] = coarse_[t] || is_coarse_for_sphere(surface, body, contacts, t, tool);
     add_errors(surface, body, contacts, t, tool, error);
+    if (tool.half_length == 0.0) continue;
+    const double coarse = error_of_sphere(surface, body, contacts, t, tool);
+    measured = measured && coarse < infinity;
+    coarse_[t] = coarse_[t] || (coarse > coarse_error && coarse < infinity);
   }
+  if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
+  coarse_[t] = coarse_[t] || presses_coarse_facets(surface, t, tool, measured);
   if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
   error.parts.merged = scale_of_force(t, force) * missing_depth() / (1.0 - missing_depth());
@@ -397,7 +421,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
-  feedback_ = 0.0;
+  feedback_ = of_lifted_ = 0.0;
 }
 
 /// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.
@@ -595,6 +619,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
   arrived_ = proxies_.arrived();
+  of_lifted_ *= 1.0 - part;
   if (part == 1.0)
     rows_.place_points();
   else
