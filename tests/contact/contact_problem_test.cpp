@@ -51,6 +51,7 @@ TEST_CASE("one contact: force is penetration over tissue plus coupling complianc
         CHECK(s.force().head<2>().norm() <= 1e-12 * s.force()[2]);
         CHECK_THAT(s.tools[0].proxy[2], WithinAbs(radius - depth + coupling * s.force()[2], 1e-9));
         CHECK(s.status == Status{});
+        s.problem.force_error(tissue, 0, s.tools[0]);
         CHECK(s.problem.status_of(0, s.tools[0]) == Status(StatusFlag::coarse_contact));  // its material is not known
       }
     }

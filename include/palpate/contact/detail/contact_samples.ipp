@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -61,7 +62,19 @@ class ContactSamples::Builder {
       const ContactSample& s = made_.samples_[i];
       for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * surface_.position(s.vertices[a]);
       if (const double length = p.normal.norm(); length > 0.0) p.normal /= length;
+      p.body = body_of(s.vertices[0]);
     }
+  }
+
+  /// The spacing of level 0 is that of the mesh where that is finer.
+  void measure_spacing() {
+    constexpr double part = 0.02;  // of the points are closer
+    std::vector<double> areas;
+    for (const Point& p : points_) areas.push_back(p.area);
+    if (areas.empty()) return;
+    const auto at_part = areas.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(areas.size()));
+    std::nth_element(areas.begin(), at_part, areas.end());
+    if (*at_part > 0.0) made_.finest_ = std::min(made_.finest_, std::sqrt(*at_part * 2.0 / std::numbers::sqrt3));
   }
 
   /// Coarse levels first: their points keep the largest distances. The order is random, so that no direction is
@@ -70,7 +83,10 @@ class ContactSamples::Builder {
     made_.level_.assign(points_.size(), 0);
     std::vector<int> order(points_.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [](int i, int j) { return mixed(i) < mixed(j); });
+    std::vector<std::uint64_t> key;
+    for (const ContactSample& s : made_.samples_) key.push_back(key_of(s));
+    std::sort(order.begin(), order.end(),
+              [&](int i, int j) { return key[at(i)] != key[at(j)] ? key[at(i)] < key[at(j)] : i < j; });
     std::vector<int> taken;
     for (int level = made_.levels_ - 1; level > 0; --level) {
       Cells cells(points_, least_distance * made_.spacing(level));
@@ -130,6 +146,7 @@ class ContactSamples::Builder {
   struct Point {
     Vector3 position = Vector3::Zero(), normal = Vector3::Zero();
     double area = 0.0;  // of level 0
+    int body = 0;
   };
 
   /// Points in cells of a grid, in a hash table with chains. Points with normals more than 60 degrees apart are not
@@ -153,7 +170,8 @@ class ContactSamples::Builder {
             for (int i = head_[slot({c[0] + x, c[1] + y, c[2] + z})]; i >= 0; i = next_[at(i)]) {
               const Point& other = points_[at(i)];
               const double squared = (other.position - p.position).squaredNorm();
-              if (squared < least && other.normal.dot(p.normal) > 0.5) least = squared, best = i;
+              if (squared < least && other.normal.dot(p.normal) > 0.5 && other.body == p.body)
+                least = squared, best = i;
             }
       return best;
     }
@@ -175,8 +193,8 @@ class ContactSamples::Builder {
   };
 
   /// A bijection of 64 bits without order (Steele, Lea and Flood 2014).
-  static std::uint64_t mixed(int i) noexcept {
-    std::uint64_t z = static_cast<std::uint64_t>(i) + 0x9e3779b97f4a7c15u;
+  static std::uint64_t mixed(std::uint64_t i) noexcept {
+    std::uint64_t z = i + 0x9e3779b97f4a7c15u;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
     z = (z ^ z >> 27) * 0x94d049bb133111ebu;
     return z ^ z >> 31;
@@ -186,6 +204,22 @@ class ContactSamples::Builder {
   const Vector3& at_rest(int v) const noexcept {
     const SubfacetCompliance* const known = surface_.subfacet().get();
     return known != nullptr && known->is_known(v) ? known->vertex(v).position : surface_.position(v);
+  }
+  /// A number that a point keeps when other triangles are cut, or its body joins others.
+  std::uint64_t key_of(const ContactSample& s) const noexcept {
+    std::uint64_t key = 0;
+    for (std::size_t a = 0; a < 3; ++a) {  // in any order
+      if (s.weights[a] == 0.0) continue;
+      const auto vertex =
+          static_cast<std::uint64_t>(s.vertices[a] - surface_.known_errors(body_of(s.vertices[a])).first);
+      key += mixed(vertex << 32 ^ static_cast<std::uint64_t>(std::llround(s.weights[a] * 0x1p24)));
+    }
+    return mixed(key);
+  }
+  int body_of(int vertex) const noexcept {
+    int body = surface_.body_count() - 1;
+    while (body > 0 && vertex < surface_.known_errors(body).first) --body;
+    return body;
   }
   double length(int a, int b) const noexcept { return (surface_.position(a) - surface_.position(b)).norm(); }
   int parts(const Triangle& t) const noexcept {
@@ -268,11 +302,12 @@ class ContactSamples::Builder {
 PALPATE_INLINE ContactSamples::ContactSamples(const ContactSurface& surface, double finest, double coarsest)
     : finest_(finest) {
   constexpr int most_levels = 40;
-  levels_ = std::clamp(static_cast<int>(std::ceil(2.0 * std::log2(std::max(coarsest, finest) / finest) - rounding)), 0,
-                       most_levels) +
-            1;
   Builder builder(*this, surface);
   builder.place();
+  builder.measure_spacing();
+  levels_ = std::clamp(static_cast<int>(std::ceil(2.0 * std::log2(std::max(coarsest, finest) / finest_) - rounding)), 0,
+                       most_levels) +
+            1;
   builder.choose_levels();
   builder.divide_areas();
   builder.sort();

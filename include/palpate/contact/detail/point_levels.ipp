@@ -26,7 +26,8 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
   begin_round();
 }
 
-/// Tools that need less than an equal share of the rest get what they need; the others share the rest equally.
+/// Tools that need less than an equal share of the rest get what they need; the others share the rest equally. What is
+/// left is for all.
 PALPATE_INLINE void PointLevels::divide() noexcept {
   std::array<bool, maximum_tools> open{};
   for (std::size_t t = 0; t < maximum_tools; ++t) open[t] = radius_[t] > 0.0;
@@ -46,6 +47,10 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
   }
   for (std::size_t t = 0; t < maximum_tools; ++t)
     if (open[t]) share_[t] = std::max(1, rest / tools);
+  if (tools > 0) return;
+  tools = static_cast<int>(std::count_if(radius_.begin(), radius_.end(), [](double r) { return r > 0.0; }));
+  for (std::size_t t = 0; t < maximum_tools; ++t)
+    if (radius_[t] > 0.0) share_[t] += rest / tools;
 }
 
 /// Between two levels a tool has up to twice as many points as it would have at a level of that spacing.
