@@ -16,7 +16,7 @@ Counts run_palpate(const Scene& scene) {
   HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>> model(scene.mesh, supports, scene.material);
   ServoOptions options;
   options.coupling_stiffness = 2000.0;
-  options.contact.local_compliance = false;  // Bullet has no such dent, and the judge would count it as depth
+  options.contact.subfacet_compliance = false;  // Bullet has no such dent, and the judge would count it as depth
   HapticServo servo(model, SphereTool{.radius = scene.radius}, options);
 
   Judge judge(scene);

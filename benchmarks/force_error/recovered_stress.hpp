@@ -10,8 +10,8 @@ namespace force_error {
 
 /// Excess of the contact force of the last tick over that on a fine mesh [N], from the stress under its contact forces
 /// f alone. u_h is the solution for f, e its error. Because K u_h = f on the mesh, f^T (W - W_h) f = |e|^2 (energy
-/// norm), and the recovered stress estimates |e|. So |e|^2 / F is the missing depth of a force F, less what
-/// LocalIndentation added; it becomes a force as in ForceAccuracy. Valid for elements that are integrated exactly and
+/// norm), and the recovered stress estimates |e|. So |e|^2 / F is the missing depth of a force F, without
+/// ContactParameters::subfacet_compliance; it becomes a force as in ForceAccuracy. Valid for elements that are integrated exactly and
 /// compatible: not for smoothed strain, mean dilatation. It does not see the shape of the facets and the spacing of
 /// contact points. One solve and one recovery of stress: milliseconds.
 template <class Model>
@@ -25,7 +25,7 @@ double recovery_estimate(Model& model, const palpate::HapticServo& servo) {
   const double force = servo.contact_force().norm(), depth = servo.indentation();
   if (forces.empty() || !(depth > 0.0)) return 0.0;
   const palpate::ErrorEstimate estimate = palpate::estimate_error(model.body(), model.displacement(forces));
-  const double missing = estimate.error * estimate.error / force - servo.local_indentation();
+  const double missing = estimate.error * estimate.error / force;
   return force * missing / (depth + missing);
 }
 

@@ -39,6 +39,8 @@ class SubfacetCompliance {
     int vertices;
   };
   explicit SubfacetCompliance(std::span<const Body> bodies);
+  /// The same for a surface with more vertices, where only these are known, and none of the new ones.
+  SubfacetCompliance(const SubfacetCompliance& whole, const std::vector<bool>& known);
 
   int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
   const HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }

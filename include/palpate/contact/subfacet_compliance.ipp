@@ -38,6 +38,20 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
   }
 }
 
+PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, const std::vector<bool>& known) {
+  first_.assign(1, 0);
+  for (std::size_t v = 0; v < known.size(); ++v) {
+    const int vertex = static_cast<int>(v);
+    const bool is_old = vertex < whole.vertex_count();
+    vertices_.push_back(is_old ? whole.vertex(vertex) : HalfSpacePoint{});
+    if (!known[v]) vertices_.back().root = 0.0;
+    if (is_old && known[v])
+      for (const Block& block : whole.blocks(vertex))
+        if (known[at(block.vertex)]) blocks_.push_back(block);
+    first_.push_back(static_cast<int>(blocks_.size()));
+  }
+}
+
 PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
                                                         const Vector3& normal) const noexcept {
   HalfSpacePoint p;

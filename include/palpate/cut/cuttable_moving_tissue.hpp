@@ -6,6 +6,7 @@
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/detail/cut_half_space.hpp>
 #include <palpate/cut/detail/cut_motion.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
@@ -151,6 +152,7 @@ class CuttableMovingTissue : public MovingTissue {
     prepared.start = motion->displacement();
     prepared.motion = std::move(motion);
     set_up(touchable, std::move(prepared), parameters.step, pattern);
+    half_space_ = contact_surface().subfacet();
     known_ = touchable.nodes.size();
     for (std::size_t v = 0; v < known_; ++v) similar_.push_back(static_cast<int>(v));
   }
@@ -244,6 +246,7 @@ class CuttableMovingTissue : public MovingTissue {
     made.parent = parents();
     made.surface = ContactSurface(std::move(positions), std::move(triangles));
     made.surface.set_materials(elastic_body().contact_materials(elements));
+    made.surface.set_subfacet(half_space_after_cuts(half_space_, body_->topology, made.nodes));
     if (tools_.radii.smallest > 0.0)
       made.contact = std::make_shared<ContactProblem>(made.surface, tools_.radii, tools_.contact);
     const CutBody& body = cut_motion_->body();
@@ -283,6 +286,7 @@ class CuttableMovingTissue : public MovingTissue {
   Tools tools_;
   CutOrders orders_;
   RestingEdges edges_;
+  std::shared_ptr<const SubfacetCompliance> half_space_;  // before any cut
   CutReport report_;
   std::atomic<bool> failed_{false};
   bool left_out_ = false;   // triangles of the surface, too large for the tools

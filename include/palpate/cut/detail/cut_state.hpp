@@ -6,6 +6,7 @@
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/detail/box.hpp>
 #include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/detail/cut_half_space.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_preparation.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
@@ -82,6 +83,9 @@ class CutState {
         system_(topology_, *physics_, kept_nodes(), limits_, &report),
         diagonal_(box_of(topology_.mesh().positions).size().norm()),
         lost_(std::max(report.probe_error, 0.5 * std::numeric_limits<double>::epsilon() * report.condition_estimate)) {
+    const Body<E>& whole = physics_->body;
+    half_space_ = std::make_shared<SubfacetCompliance>(project_half_space(
+        whole, extract_boundary<E>(whole.mesh), touchable_.nodes(), topology_.constrained(), nullptr, limits_));
     limits_.threads = 1;  // beside a haptic loop from here on
     limits_.progress = {};
     find_supports();
@@ -177,6 +181,7 @@ class CutState {
     erase_stretched(positions, ContactSamples::maximum_subdivision * smallest_radius, triangles, elements);
     ContactSurface surface(std::move(positions), std::move(triangles));
     surface.set_materials(detail::contact_materials(physics_->body, elements));
+    surface.set_subfacet(half_space_after_cuts(half_space_, topology_, touchable_.nodes()));
     const auto shell = touchable_.shell(topology_);
     surface.add_shell(positions_of(shell.others), shell.triangles);
     return surface;
@@ -216,6 +221,7 @@ class CutState {
   double lost_;                   // relative error of the compliance at set-up
   std::vector<double> support_;   // per node before any cut, distance to a constrained one [m]; infinity: not touched
   CutReport report_;
+  std::shared_ptr<const SubfacetCompliance> half_space_;  // before any cut
   std::shared_ptr<CutContact> contact_;  // of the last cut
   std::vector<double> bound_;            // of the last view
   std::uint64_t cut_ = 0;                // number of the last cut
