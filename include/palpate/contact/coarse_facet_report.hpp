@@ -7,8 +7,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Facets that do not show the dent of a sphere of this radius. Where their material is known, the indentation that is
-/// missing is estimated (ContactParameters::local_compliance); elsewhere the contact is too stiff. docs/contact.md.
+/// Facets that do not show the dent of a sphere of this radius. Where the half-space is known, contact points have the
+/// dent that is missing (SubfacetCompliance); elsewhere the contact is too stiff. docs/contact.md.
 struct CoarseFacetReport {
   double radius = 0.0;         ///< of the smallest tool [m]
   double longest = 0.0;        ///< largest ContactSurface::facet_length [m]
