@@ -127,7 +127,7 @@ TEMPLATE_TEST_CASE("the load on a surface that is nearly flat is nearly a unit f
     bumpy.body.mesh.positions[static_cast<std::size_t>(n)][2] -= 1e-7 * random.uniform();
   const ProjectedHalfSpace table = bumpy.table();
   for (int v = 0; v < flat.vertex_count(); ++v)
-    if (flat.marks(v).bits == 0) CHECK((table(v, v) - flat(v, v)).norm() <= 2e-3 * flat(v, v).norm());
+    if (flat.marks(v).bits == 0) CHECK((table(v, v) - flat(v, v)).norm() <= 1e-3 * flat(v, v).norm());
 }
 
 TEST_CASE("the image of a half-space has the same bits for any number of threads", "[half_space]") {
@@ -210,9 +210,11 @@ TEST_CASE("several materials and materials with directions are marked", "[half_s
   const ProjectedHalfSpace two = block.table();
   for (int v = 0; v < two.vertex_count(); ++v) {
     const double x = two.vertex(v).position[0];
-    CHECK(two.marks(v).has(HalfSpaceMark::several_materials) == (std::abs(x - width / 2) < 0.5));
+    const double to_border = std::abs(x - width / 2);
+    if (to_border < 1.5) CHECK(two.marks(v).has(HalfSpaceMark::several_materials));
+    if (to_border > 2.5) CHECK_FALSE(two.marks(v).has(HalfSpaceMark::several_materials));
     const double softer = x > width / 2 + 0.5 ? 0.25 : 1.0;
-    if (std::abs(x - width / 2) > 0.5) CHECK((two(v, v) - softer * one(v, v)).norm() <= 1e-9 * one(v, v).norm());
+    if (to_border > 0.5) CHECK((two(v, v) - softer * one(v, v)).norm() <= 1e-9 * one(v, v).norm());
   }
   block.body.elasticity[0](0, 0) *= 2.0;
   CHECK(block.table().marks(0).has(HalfSpaceMark::anisotropic));

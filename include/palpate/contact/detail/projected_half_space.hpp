@@ -14,7 +14,7 @@ enum class HalfSpaceMark : std::uint8_t {
   near_edge = 2,           ///< a neighbour on the surface is beyond such an edge, or constrained
   singular = 4,            ///< the mesh around it gave no solution: the vertex is left as it is
   no_surface = 8,          ///< not on the boundary of the body: left as it is
-  several_materials = 16,  ///< in elements of different materials, whose mean was taken
+  several_materials = 16,  ///< less than two elements from another material
   anisotropic = 32,        ///< the material differs from the isotropic one that was taken
 };
 

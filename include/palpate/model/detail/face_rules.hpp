@@ -25,7 +25,7 @@ using FaceRule = std::vector<FacePoint>;
 /// Rules for one kind of face: for smooth functions, and for functions that are singular at a node, where the product
 /// with the area element of polar coordinates around the node is smooth.
 struct FaceRules {
-  FaceRule smooth;
+  FaceRule smooth, near;              ///< `near`: for a singularity closer than the size of the face
   std::vector<FaceRule> singular_at;  ///< per node
 };
 
@@ -75,9 +75,19 @@ struct ReferenceTriangle {
   }
 };
 
-template <TriangulatedFace F, class Rule>
-void add_smooth(FaceRule& rule, const ReferenceTriangle& t) {
-  for (const auto& p : Rule::points) add_face_point<F>(rule, t.a + p.xi[0] * t.ab + p.xi[1] * t.ac, p.weight * t.area);
+/// Seven points in each of parts x parts similar triangles.
+template <TriangulatedFace F>
+void add_smooth(FaceRule& rule, const ReferenceTriangle& t, int parts) {
+  const double size = 1.0 / parts, weight = t.area * size * size;
+  const auto add = [&](double u, double v, double scale) {
+    for (const auto& p : TriangleRule<5>::points)
+      add_face_point<F>(rule, t.a + (u + scale * p.xi[0]) * t.ab + (v + scale * p.xi[1]) * t.ac, p.weight * weight);
+  };
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; i + j < parts; ++j) {
+      add(i * size, j * size, size);
+      if (i + j + 2 <= parts) add((i + 1) * size, (j + 1) * size, -size);
+    }
 }
 
 /// Polar coordinates around the first corner (Duffy 1982): the area element contains the distance from it.
@@ -92,7 +102,7 @@ void add_collapsed(FaceRule& rule, const ReferenceTriangle& t) {
 }
 
 template <TriangulatedFace F>
-FaceRule face_rule(int singular_node) {
+FaceRule face_rule(int singular_node, int parts) {
   constexpr std::size_t none = 3;
   FaceRule rule;
   for (std::size_t t = 0; t < F::triangles.size(); ++t) {
@@ -101,18 +111,16 @@ FaceRule face_rule(int singular_node) {
       if (F::triangles[t][i] == singular_node) first = i;
     if (first != none)
       add_collapsed<F>(rule, ReferenceTriangle::of<F>(t, first));
-    else if constexpr (F::triangles.size() <= 2)
-      add_smooth<F, TriangleRule<5>>(rule, ReferenceTriangle::of<F>(t, 0));
     else
-      add_smooth<F, TriangleRule<2>>(rule, ReferenceTriangle::of<F>(t, 0));
+      add_smooth<F>(rule, ReferenceTriangle::of<F>(t, 0), parts);
   }
   return rule;
 }
 
 template <TriangulatedFace F>
 FaceRules face_rules() {
-  FaceRules rules{face_rule<F>(-1), {}};
-  for (int a = 0; a < F::nodes; ++a) rules.singular_at.push_back(face_rule<F>(a));
+  FaceRules rules{face_rule<F>(-1, 1), face_rule<F>(-1, 2), {}};
+  for (int a = 0; a < F::nodes; ++a) rules.singular_at.push_back(face_rule<F>(a, 1));
   return rules;
 }
 

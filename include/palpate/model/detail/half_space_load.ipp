@@ -56,7 +56,7 @@ PALPATE_INLINE void HalfSpaceLoad::add_own_load() {
       ShortIds<static_cast<std::size_t>(max_face_nodes)> nodes(element.local_face(f).size());
       for (std::size_t a = 0; a < nodes.size(); ++a) nodes[a] = source_.mesh.nodes_of(e)[element.local_face(f)[a]];
       if (std::find(nodes.begin(), nodes.end(), patch_->middle()) != nodes.end()) continue;
-      for_each_traction(nodes, source_.rules.of(nodes.size()).smooth,
+      for_each_traction(nodes, source_.rules.of(nodes.size()).near,
                         [&](const FacePoint&, const Matrix3& traction) { load -= traction; });
     }
 }

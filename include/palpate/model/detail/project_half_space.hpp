@@ -7,6 +7,7 @@
 #include <palpate/local/isotropic.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/detail/half_space_source.hpp>
+#include <palpate/model/detail/vertex_materials.hpp>
 
 #include <span>
 #include <utility>
@@ -19,14 +20,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// not have its size. Allocates; 0.2 to 0.4 ms per vertex and core for linear elements, 1 ms for quadratic ones, and 2
 /// kB per vertex; each thread has 28 bytes per node of the mesh.
 ProjectedHalfSpace project_half_space(const HalfSpaceSource& source, const SetupLimits& limits);
-
-/// The isotropic materials that stand for those of the elements at vertices, with the same bulk modulus and mean shear
-/// stiffness. `material_of` has the elasticity matrix of every element. `ratios` receives their different Poisson
-/// ratios; VertexMaterial::stiffness is an index of it. At a border the shear modulus is the mean, and the ratio that
-/// of most elements. O(elements at vertices).
-std::vector<VertexMaterial> vertex_materials(std::span<const NodeId> touched, const NodeElements& around,
-                                             std::span<const Matrix6> elasticities, std::span<const int> material_of,
-                                             std::vector<double>& ratios);
 
 /// The domains of an element with smoothed strain; none for others. O(elements), throws as StrainDomains.
 template <Element E>
@@ -63,7 +56,7 @@ ProjectedHalfSpace project_half_space(const Body<E>& body, const std::vector<Bou
   std::vector<int> material_of;
   for (Index e = 0; e < body.mesh.element_count(); ++e) material_of.push_back(static_cast<int>(body.material_of(e)));
   std::vector<double> ratios;
-  const auto materials = vertex_materials(touched, around, body.elasticity, material_of, ratios);
+  const auto materials = vertex_materials(mesh_ref(body.mesh), touched, around, body.elasticity, material_of, ratios);
   const bool one = own != nullptr && body.elasticity.size() == 1 && lame_constants(body.elasticity[0]);
   std::vector<BlockMatrix> made(one ? 0 : ratios.size());
   std::vector<UniformStiffness> stiffness;

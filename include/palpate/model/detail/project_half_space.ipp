@@ -15,66 +15,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-/// Largest difference of a material from the isotropic one with the same moduli, relative to its largest entry.
-inline double anisotropy(const Matrix6& d) noexcept {
-  const double mu = equivalent_shear_modulus(d), lambda = bulk_modulus(d) - 2.0 / 3.0 * mu;
-  double difference = 0.0;
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 6; ++i) {
-      const double same = (i < 3 && j < 3 ? lambda : 0.0) + (i != j ? 0.0 : i < 3 ? 2.0 * mu : mu);
-      difference = std::max(difference, std::abs(d(i, j) - same));
-    }
-  return difference / d.cwiseAbs().maxCoeff();
-}
-
-/// The isotropic material that stands for an elasticity matrix.
-struct EquivalentMaterial {
-  double shear_modulus = 0.0;
-  int ratio = 0;
-  bool anisotropic = false;
-};
-
-/// Of every matrix that is used; adds to `ratios` what differs from all in it.
-inline std::vector<EquivalentMaterial> equivalent_materials(std::span<const Matrix6> elasticities,
-                                                            const std::vector<bool>& used,
-                                                            std::vector<double>& ratios) {
-  constexpr double same_ratio = 1e-6, largest_ratio = 0.49999, anisotropic = 0.05;
-  std::vector<EquivalentMaterial> materials;
-  for (std::size_t m = 0; m < elasticities.size(); ++m) {
-    const Matrix6& d = elasticities[m];
-    if (!used[m]) {
-      materials.emplace_back();
-      continue;
-    }
-    const double nu = std::min(equivalent_poisson_ratio(d), largest_ratio);
-    auto known = std::ranges::find_if(ratios, [&](double r) { return std::abs(r - nu) <= same_ratio; });
-    if (known == ratios.end()) known = ratios.insert(known, nu);
-    materials.push_back(
-        {equivalent_shear_modulus(d), static_cast<int>(known - ratios.begin()), anisotropy(d) > anisotropic});
-  }
-  return materials;
-}
-
-/// What several elements have in common.
-inline VertexMaterial mean_material(std::span<const NodeId> elements, std::span<const int> material_of,
-                                    std::span<const EquivalentMaterial> materials, std::vector<int>& votes) {
-  VertexMaterial mean;
-  std::ranges::fill(votes, 0);
-  for (const NodeId e : elements) {
-    const EquivalentMaterial& material = materials[static_cast<std::size_t>(material_of[static_cast<std::size_t>(e)])];
-    const auto& first = materials[static_cast<std::size_t>(material_of[static_cast<std::size_t>(elements[0])])];
-    mean.shear_modulus += material.shear_modulus;
-    ++votes[static_cast<std::size_t>(material.ratio)];
-    if (material.anisotropic) mean.marks.set(HalfSpaceMark::anisotropic);
-    const bool same = material.ratio == first.ratio &&
-                      std::abs(material.shear_modulus - first.shear_modulus) <= 1e-6 * first.shear_modulus;
-    if (!same) mean.marks.set(HalfSpaceMark::several_materials);
-  }
-  mean.shear_modulus /= static_cast<double>(elements.size());
-  mean.stiffness = static_cast<int>(std::ranges::max_element(votes) - votes.begin());
-  return mean;
-}
-
 /// Projects all vertices of a source and collects the results.
 class HalfSpaceTable {
  public:
@@ -225,24 +165,6 @@ inline void require_sizes(const HalfSpaceSource& source) {
 }
 
 }  // namespace detail
-
-PALPATE_INLINE std::vector<VertexMaterial> vertex_materials(std::span<const NodeId> touched, const NodeElements& around,
-                                                            std::span<const Matrix6> elasticities,
-                                                            std::span<const int> material_of,
-                                                            std::vector<double>& ratios) {
-  std::vector<bool> used(elasticities.size(), false);
-  for (const NodeId node : touched)
-    for (const NodeId e : around.of(node))
-      used[static_cast<std::size_t>(material_of[static_cast<std::size_t>(e)])] = true;
-  const auto materials = detail::equivalent_materials(elasticities, used, ratios);
-  std::vector<int> votes(ratios.size());
-  std::vector<VertexMaterial> result;
-  for (const NodeId node : touched) {
-    VertexMaterial& mean = result.emplace_back(detail::mean_material(around.of(node), material_of, materials, votes));
-    mean.poisson_ratio = ratios[static_cast<std::size_t>(mean.stiffness)];
-  }
-  return result;
-}
 
 PALPATE_INLINE ProjectedHalfSpace project_half_space(const HalfSpaceSource& source, const SetupLimits& limits) {
   detail::require_sizes(source);
