@@ -166,6 +166,27 @@ TEST_CASE("a crash, an exception and an endless scene are findings", "[cross]") 
         }) == "endless");
 }
 
+TEST_CASE("a difference that a flag reports excuses later ones of a tissue that moves", "[cross]") {
+  Scene scene;
+  const Run run = linear_run(scene);
+  Run other = run;
+  const int middle = middle_of_hold(scene);
+  for (const int k : {0, 1, 2}) {
+    tick_of(other, middle - 30 + k).force *= 1.02;
+    tick_of(other, middle + k).force *= 1.2;
+  }
+  const auto is_flagged = [&](const char* solver) {
+    scene.solver = solver;
+    const std::vector<Finding> found = compare("copy", scene, run, other, 0.05);
+    REQUIRE_FALSE(found.empty());
+    return found.back().flagged;
+  };
+  CHECK_FALSE(is_flagged("quasi_newton"));
+  tick_of(other, middle - 29).status.set(StatusFlag::solver_not_converged);
+  CHECK(is_flagged("quasi_newton"));
+  CHECK_FALSE(is_flagged("condensed"));
+}
+
 TEST_CASE("known failures have a cause and match only where they apply", "[cross]") {
   for (const Known& k : read_known(PALPATE_CROSS_KNOWN)) {
     INFO(k.file);

@@ -92,7 +92,8 @@ class ContactProblem {
   static constexpr int vertices_per_contact = 12;
   static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;  // rows, those of deepest penetration
-  static constexpr double unsettled = 0.05;   // relative change of force in the last linearisation that is flagged
+  static constexpr double unsettled = 0.05;   // relative change of force that is left and is flagged
+  static constexpr double growing = 0.005;    // the same where a change is larger than the one before
   static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
   static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation
@@ -131,6 +132,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
+  static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) noexcept;
 
   ContactParameters parameters_;

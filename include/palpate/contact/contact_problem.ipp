@@ -89,7 +89,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   candidates_.begin_tick(tissue.contact_surface(), tools);
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
-  double change = 0.0, before = 0.0;
+  double change = 0.0, before = 0.0, rest = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
     if (rounds_left_ <= 0) {
       status.set(StatusFlag::solver_not_converged);
@@ -111,16 +111,26 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (rows_.has_moving()) proxies_.note_alternation(tools);
     proxies_.end(tools);
     change = std::max(local_change, proxies_.relative_change(tools, rows_.largest_force_scale(tools)));
-    if (has_converged(tools, iteration, local_change, before, change)) break;
+    const bool converged = has_converged(tools, iteration, local_change, before, change);
+    rest = converged ? change : rest_of_changes(iteration > 1 ? before : infinity, change, rest);
+    if (converged) break;
     before = change;
   }
   rows_.stick(tools);
   shares_.end_tick(rows_.count_pressing());
   if (shares_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (change > unsettled || rows_.alternation_change() > unsettled_alternation)
+  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation)
     status.set(StatusFlag::solver_not_converged);
-  proxies_.end_tick(tools, change <= unsettled);
+  proxies_.end_tick(tools, rest <= unsettled);
   return status;
+}
+
+/// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get smaller
+/// by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not stable:
+/// rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
+PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
+  if (rest == infinity || (change >= before && change > growing)) return infinity;
+  return change < before ? std::max(change, change * change / (before - change)) : change;
 }
 
 /// Whether the expected change by further linearisations is within the tolerance. `change` is that of the last one,

@@ -125,14 +125,22 @@ class ExplicitTissueMotion final : public TissueMotion {
       done.status.set(StatusFlag::step_refused);
       return done;
     }
-    const auto steps = static_cast<int>(count);
-    for (int k = 0; k < steps; ++k) {
+    int left = static_cast<int>(count);
+    double dt = length_ / count;
+    for (int most = maximum_substeps_; left > 0 && most > 0; --left, --most) {
+      if (dt > motion_.limit()) {  // which is estimated again on the way, and may have become shorter
+        const double rest = left * dt, more = std::max(left + 1.0, substeps(rest));
+        if (!(more <= most)) break;
+        left = static_cast<int>(more);
+        dt = rest / more;
+      }
       for (const Index dof : motion_.state().constrained) {
         const double from = motion_.state().displacement[dof];
-        motion_.target()[dof] = from + (prescribed_[dof] - from) / (steps - k);
+        motion_.target()[dof] = from + (prescribed_[dof] - from) / left;
       }
-      done.status |= motion_.step(length_ / count);
+      done.status |= motion_.step(dt);
     }
+    if (left > 0) done.status.set(StatusFlag::step_refused);
     done.deformation = motion_.deformation();
     done.taken = !done.status.has(StatusFlag::energy_grew) && !done.status.has(StatusFlag::step_refused);
     return done;
