@@ -48,7 +48,7 @@ TEST_CASE("explicit steps reach the steady force of implicit ones for any step",
     const auto [force, status] = force_of_hold(tissue);
     INFO("step " << step << ", status " << status);
     CHECK_THAT(force, WithinRel(wanted, 5e-3));
-    CHECK(status.ok());
+    CHECK((status.ok() || status == StatusFlag::coarse_contact));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <palpate/element/smoothed.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -115,6 +116,41 @@ TEST_CASE("an invalid reading after the surface was lost lifts the tool", "[hapt
   input.take(state, pad.to_world(), surface, {}, tool);
   CHECK(tool.active);
   CHECK(input.restarted());
+}
+
+TEST_CASE("where the tissue keeps a part of the force of a lost tool for a tick, that tick has not converged",
+          "[haptic][servo]") {
+  const double height = 18e-3;
+  Scene scene;
+  scene.fix("z0").touch("z1").expand(everywhere, 0.05);
+  test::Pad pad(box_tet4(Vector3(36e-3, 36e-3, height), {6, 6, 3}, BoxSplit::five_mirrored), scene,
+                LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
+  const Vector3 along(1.0, 0.0, 0.0);
+  const std::array<double, 3> radius{0.9e-3, 0.5e-3, 2e-3}, y{9.36e-3, 32.4e-3, 18e-3}, depth{0.25, 0.2, 0.2};
+  HapticServo servo(pad,
+                    ToolList{SphereTool{.radius = radius[0]}, CapsuleTool(radius[1], 1e-3, along),
+                             CapsuleTool(radius[2], 4e-3, along)},
+                    {.coupling_stiffness = 1000.0});
+  std::array<ToolState, 3> states;
+  int kept = 0;
+  for (int k = 0; k < 180; ++k) {
+    const double in = 0.5 - 0.5 * std::cos(std::min(1.0, k / 135.0) * std::numbers::pi);
+    for (std::size_t t = 0; t < 3; ++t) {
+      states[t].time = states[t].now = 1e-3 * k;
+      states[t].position = Vector3(18e-3, y[t], height + radius[t] * (1.5 - (0.5 + depth[t]) * in));
+    }
+    states[2].valid = k < 172;
+    const Status status = servo.tick(states)[0].status;
+    const double force = servo.contact_force(0).norm();
+    Vector3 sum = servo.contact_force(0) + servo.contact_force(1) + servo.contact_force(2);
+    const ServoSnapshot& snapshot = servo.read_snapshot();
+    for (std::size_t i = 0; i < snapshot.force_count; ++i) sum += snapshot.forces[i].force.in_model_axes();
+    if (sum.norm() <= 0.01 * force) continue;
+    CAPTURE(k, sum.norm(), force);
+    ++kept;
+    CHECK(status.has(StatusFlag::solver_not_converged));
+  }
+  CHECK(kept > 0);
 }
 
 TEST_CASE("a tool that cannot be read leaves no force on the tissue", "[haptic][servo][extreme][D12]") {

@@ -166,6 +166,18 @@ TEST_CASE("linear and Neo-Hookean forces differ by less than the part for large 
   CHECK(fine >= 2);
 }
 
+TEST_CASE("a deep press over a fixed edge has a finite bound for large strain, and is flagged",
+          "[force_error][parts]") {
+  const PartsBody body{.thickness = 2.0, .plate = true, .at = 0.05};
+  HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>> model(body.mesh(), body.scene(),
+                                                                                  body.material());
+  for (const PartsPress& press : press_to(model, body, {0.25, 0.5})) {
+    CAPTURE(press.force, press.error.parts.linearity);
+    CHECK(press.error.parts.linearity < infinity);
+    CHECK(press.status.has(StatusFlag::large_displacement));
+  }
+}
+
 TEST_CASE("a force with fewer rows than contacts differs by less than the part for merged contacts",
           "[force_error][parts]") {
   const PartsBody body{.cells = 24};

@@ -124,14 +124,16 @@ class ContactProblem {
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
   void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
                   const ContactTool& tool, ForceError& error) const noexcept;
-  bool is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
-                            std::size_t t, const ContactTool& tool) const noexcept;
+  double error_of_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
+                         std::size_t t, const ContactTool& tool) const noexcept;
+  inline static double distance_from_support(const LinearModelError& model, const Contact& c) noexcept;
   void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
                         std::size_t t, SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
+  void note_forces_of_lifted(Tools tools) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double local_change, double before, double& change) noexcept;
 
@@ -152,6 +154,7 @@ class ContactProblem {
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
+  double of_lifted_ = 0.0;  // forces of tools that are gone, which are still on the tissue [N]
   double floor_ = 0.0;
 };
 

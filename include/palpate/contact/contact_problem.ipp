@@ -83,6 +83,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   floor_ = tissue.compliance_floor();
   rounds_left_ = maximum_rounds;
   status |= tissue.require_columns({});  // before the revision is read
+  note_forces_of_lifted(tools);
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
@@ -119,10 +120,18 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.stick(tools);
   shares_.end_tick(rows_.count_pressing());
   if (shares_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation)
+  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation ||
+      of_lifted_ > parameters_.force_tolerance * rows_.largest_force_scale(tools))
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, rest <= unsettled);
   return status;
+}
+
+/// A tool that is gone, or restarts elsewhere, has no force any more. Where the linearisations go a part of their step
+/// the tissue keeps a part of it.
+PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept {
+  for (const Contact& c : rows_.contacts())
+    if (tools[at(c.tool)].force.squaredNorm() == 0.0) of_lifted_ += c.total().norm();
 }
 
 /// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get smaller
@@ -218,6 +227,13 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
   return own;
 }
 
+/// Of a contact point, from the distances of the vertices around it [m].
+inline double ContactProblem::distance_from_support(const LinearModelError& model, const Contact& c) noexcept {
+  double distance = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) distance += c.weights[a] * model.supports[at(c.vertices[a])];
+  return distance;
+}
+
 /// The strain follows from the force on a fine mesh. Where columns or rows are missing the force is too small: all of
 /// the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
@@ -236,7 +252,9 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
         sphere.poisson_ratio = material.poisson_ratio;
       }
     }
-    sphere.support = std::min(sphere.support, model.supports[static_cast<std::size_t>(c.vertices[0])]);
+    // At a fixed point the support carries the force, and no tissue is strained.
+    if (const double support = distance_from_support(model, c); support > 0.0)
+      sphere.support = std::min(sphere.support, support);
     sum += std::abs(c.force) + c.friction.norm();
   }
   parts.storage += model.storage * sum * sum / sphere.depth;
@@ -246,13 +264,12 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
 }
 
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
-/// large, theirs is: its force there is that on a half-space.
-PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& surface, const KnownErrors& body,
-                                                         const BodyContacts& contacts, std::size_t t,
-                                                         const ContactTool& tool) const noexcept {
-  if (body.accuracy == nullptr || !(tool.half_length > 0.0)) return false;
+/// large, theirs is: its force there is that on a half-space. Relative to the force; infinite if not known.
+PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const KnownErrors& body,
+                                                      const BodyContacts& contacts, std::size_t t,
+                                                      const ContactTool& tool) const noexcept {
   const auto own = std::ranges::find(contacts.rows, static_cast<int>(t), &Contact::tool);
-  if (own == contacts.rows.end()) return false;
+  if (body.accuracy == nullptr || own == contacts.rows.end()) return infinity;
   const int vertex = body.first + own->vertices[0];
   const double modulus = surface.material(surface.triangles_at(vertex).front()).modulus;
   const double depth = std::min(contacts.depth, tool.radius),
@@ -261,7 +278,7 @@ PALPATE_INLINE bool ContactProblem::is_coarse_for_sphere(const ContactSurface& s
   sphere.half_length = sphere.local_compliance = 0.0;
   sphere.force = Vector3(0.0, 0.0, force);
   const double bound = body.accuracy->error(sphere, static_cast<int>(t), contacts.rows, depth).bound;
-  return bound > coarse_error * force && bound < infinity;
+  return bound > 0.0 ? bound / force : 0.0;
 }
 
 /// The bounds add up. The expected error counts as far as it is along the force of the tool.
@@ -307,16 +324,22 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   const double force = tool.force.norm();
   if (!(force > 0.0)) return error_without_force(tissue, tool);
   ForceError error{0.0, 0.0, force, {0.0}};
-  bool pressed = false;
+  bool pressed = false, measured = true;
   for (int b = 0; b < surface.body_count(); ++b) {
     KnownErrors body = surface.known_errors(b);
     if (!tissue.has_contact_materials()) body = {body.first, body.end};
     const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
     if (!(contacts.scale > 0.0)) continue;
     pressed = true;
-    coarse_[t] = coarse_[t] || is_coarse_for_sphere(surface, body, contacts, t, tool);
     add_errors(surface, body, contacts, t, tool, error);
+    if (tool.half_length == 0.0) continue;
+    const double coarse = error_of_sphere(surface, body, contacts, t, tool);
+    measured = measured && coarse < infinity;
+    coarse_[t] = coarse_[t] || (coarse > coarse_error && coarse < infinity);
   }
+  if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
+  if (!measured && tool.hull == nullptr)
+    coarse_[t] = coarse_[t] || LocalContact::presses_long_facets(t, tool, indentation(t, tool), candidates_, rows_);
   if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
   error.parts.merged = scale_of_force(t, force) * missing_depth() / (1.0 - missing_depth());
@@ -351,7 +374,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
-  feedback_ = 0.0;
+  feedback_ = of_lifted_ = 0.0;
 }
 
 /// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.
@@ -544,6 +567,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
   arrived_ = proxies_.arrived();
+  of_lifted_ *= 1.0 - part;
   if (part == 1.0)
     rows_.place_points();
   else

@@ -22,6 +22,11 @@ class LocalContact {
   /// coarse_contact if tool `t` presses coarse facets and most of its indentation is local, beyond the range of Hertz's
   /// theory, or left out in part or completely.
   Status status(std::size_t t, const ContactTool& tool) const noexcept;
+  /// Whether the facets under a sphere or capsule pressed to `depth` [m], although they show its dent, are so long that
+  /// its force may be wrong by more than a tenth: longer than three quarters of the radius of the contact, and than
+  /// those that do for a depth of an eighth of the tool's radius. An estimate for where no error was measured.
+  static bool presses_long_facets(std::size_t t, const ContactTool& tool, double depth, const Candidates& candidates,
+                                  const ContactRows& rows) noexcept;
   void reset() noexcept { next_ = {}; }
 
  private:

@@ -97,4 +97,16 @@ PALPATE_INLINE Status LocalContact::status(std::size_t t, const ContactTool& too
   return estimated ? StatusFlag::coarse_contact : Status{};
 }
 
+PALPATE_INLINE bool LocalContact::presses_long_facets(std::size_t t, const ContactTool& tool, double depth,
+                                                      const Candidates& candidates, const ContactRows& rows) noexcept {
+  constexpr double long_facet = 0.75, usual_depth = 0.125;
+  const Load load = load_of(static_cast<int>(t), tool, candidates, rows);
+  if (!(load.force > 0.0) || LocalIndentation::is_coarse(tool.radius, load.facets.length)) return false;
+  double indentation = depth;  // of the tissue under the tool: the body may bend
+  if (load.known == 1.0)
+    indentation = std::min(depth, LocalIndentation(tool.radius, load.facets).half_space(tool.force.norm()));
+  const double contact = std::sqrt(tool.radius * std::max(indentation, usual_depth * tool.radius));
+  return load.facets.length > long_facet * contact;
+}
+
 }}  // namespace palpate
