@@ -60,15 +60,16 @@ class Draw {
   /// Half of the scenes have what the documentation recommends first.
   void composition() {
     const auto set = [this](const char* e, const char* l, const char* s) {
+      if (find_composition(e, l, s) == nullptr)
+        throw std::logic_error(std::string("not linked: ") + e + " " + l + " " + s);
       scene_.element = e, scene_.law = l, scene_.solver = s;
-      return find_composition(e, l, s) != nullptr;
     };
     const double p = random_.uniform();
-    if (p < 0.15 && set("smoothed_tet4", "linear", "condensed")) return;
-    if (p < 0.25 && set("tet4", "linear", "condensed")) return;
-    if (p < 0.40 && set("smoothed_tet4", "neo_hookean", "quasi_newton_float")) return;
-    if (p < 0.45 && set("tet4", "linear", "cut_condensed")) return;
-    if (p < 0.50 && set("tet4", "neo_hookean", "cut_quasi_newton")) return;
+    if (p < 0.15) return set("smoothed_tet4", "linear", "condensed");
+    if (p < 0.25) return set("tet4", "linear", "condensed");
+    if (p < 0.40) return set("smoothed_tet4", "neo_hookean", "quasi_newton_float");
+    if (p < 0.45) return set("tet4", "linear", "cut_condensed");
+    if (p < 0.50) return set("tet4", "neo_hookean", "cut_quasi_newton");
     const std::string solver = chance(0.5) ? one_of(compositions()).solver : one_of(linked_solvers());
     std::vector<const Composition*> some;
     for (const Composition& c : compositions())

@@ -210,7 +210,7 @@ std::vector<Finding> check_converged(const Scene& s, const Run& r) {
   return {};
 }
 
-/// The report of the set-up tells the memory.
+/// The report of the set-up has the memory.
 std::vector<Finding> check_report(const Scene&, const Run& r) {
   if (r.has_report) return {};
   return {{"report", 0, 0, 0.0, 1.0, false, ""}};
