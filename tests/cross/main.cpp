@@ -94,7 +94,7 @@ bool is_oracle(const std::string& name) {
   return std::any_of(oracles().begin(), oracles().end(), [&](const Oracle& o) { return o.name == name; });
 }
 
-/// The oracles of scene `number`: the laws of physics, comparisons by chance, and for one scene in ten the reference.
+/// The oracles of scene `number`: the laws of physics, comparisons by chance, and for one scene in five the reference.
 bool is_chosen(const Oracle& oracle, std::uint64_t number, const Arguments& a) {
   if (a.all) return true;
   if (is_oracle(a.only)) return oracle.name == a.only;
