@@ -186,7 +186,9 @@ class BodyMesh {
     palpate::Group group{"touchable", 2, {}, {}, {}};
     const auto supported = [&](NodeId node) { return std::ranges::binary_search(support.nodes, node); };
     const auto high = [&](NodeId node) { return height(node) > round_touchable * scene_.edge * scene_.cells_x; };
-    if (scene_.touched == "surface")
+    if (scene_.touched == "whole")
+      add_faces(group, [](const auto&) { return true; });
+    else if (scene_.touched == "surface")
       add_faces(group, [&](const auto& face) { return !std::ranges::all_of(face.nodes, supported); });
     else if (is_round(scene_))
       add_faces(group, [&](const auto& face) { return std::ranges::all_of(face.nodes, high); });
@@ -202,10 +204,11 @@ class BodyMesh {
     const Sides sides = scene_.support == "bottom"  ? Sides{"z0"}
                         : scene_.support == "sides" ? Sides{"x0", "x1"}
                                                     : Sides{"x0"};
-    const palpate::Group support = part("support", sides), end = part("end", {"x0"});
+    const palpate::Group support = part("support", sides), end = part("end", {"x0"}), far = part("far", {"x1"});
     const palpate::Group touched = touchable(support);
     mesh.groups = {};
     mesh.groups.all() = {support, end, touched};
+    if (scene_.support_travels != 0.0) mesh.groups.all().push_back(far);
   }
 
   /// Vector from the middle of the reference shape to the centre of an element there.
@@ -355,21 +358,36 @@ void add_load(palpate::Scene& conditions, const Scene& s, const Change& change, 
   if (s.load == "gravity") conditions.gravity(scale * stress / (s.density * size) * down);
   if (s.load == "pressure") conditions.pressure("touchable", stress);
   if (s.load == "traction") conditions.traction("touchable", 0.3 * stress * along);
-  if (s.load == "body") conditions.body_load(palpate::everywhere, stress / (size * scale) * along);
+  if (s.load == "body" && change.gravity) conditions.gravity(scale * stress / (s.density * size) * along);
+  if (s.load == "body" && !change.gravity) conditions.body_load(palpate::everywhere, stress / (size * scale) * along);
   if (s.load == "point")
     conditions.point_load(std::vector<NodeId>{top_node}, scale * scale * stress * s.edge * s.edge * down);
   if (s.load == "swelling") conditions.expand(palpate::everywhere, s.load_size);
 }
 
-palpate::Scene make_conditions(const Scene& scene, const Change& change, double size, NodeId top_node) {
+/// Of the touchable part: the radius of the smallest tool is given only where errors are measured.
+palpate::TouchOptions touch_options(const Scene& scene, const Change& change) {
+  if (!scene.measured && !scene.corrected) return {};
+  double smallest = scene.tools[0].radius;
+  for (const ToolValue& tool : scene.tools) smallest = std::min(smallest, tool.radius);
+  return {change.scale * smallest, scene.tools.size() > 1 && has_opposite(scene)};
+}
+
+/// `travel`: of a moving support, a part of Scene::support_travels.
+palpate::Scene make_conditions(const Scene& scene, const Change& change, double size, NodeId top_node,
+                               double travel = 0.0) {
   palpate::Scene conditions;
-  if (scene.support_moves != 0.0) {
+  if (scene.support_travels != 0.0) {
+    const double length = scene.edge * scene.cells_x;
+    const Vector3 move = change.scale * travel * scene.support_travels * length * change.direction(Vector3::UnitX());
+    conditions.fix("end").prescribe("far", {move[0], move[1], move[2]});
+  } else if (scene.support_moves != 0.0) {
     const Vector3 move = change.scale * scene.support_moves * scene.edge * change.direction(Vector3::UnitX());
     conditions.prescribe("support", {move[0], move[1], move[2]});
   } else {
     conditions.fix("support");
   }
-  conditions.touch("touchable");
+  conditions.touch("touchable", touch_options(scene, change));
   add_load(conditions, scene, change, size, top_node);
   return conditions;
 }
@@ -378,6 +396,10 @@ template <class E>
 void build(const Scene& scene, const Change& change, Body& body, palpate::Mesh<E>& mesh) {
   BodyMesh<E> made(scene, change);
   body.conditions = make_conditions(scene, change, made.size, made.top_node);
+  if (scene.support_travels != 0.0)
+    body.conditions_at = [scene, change, size = made.size, node = made.top_node](double part) {
+      return make_conditions(scene, change, size, node, part);
+    };
   body.moduli = {scene.youngs_modulus};
   body.division = made.division;
   if (body.division != "one")
@@ -398,7 +420,7 @@ Place box_place(const Scene& scene, double u, double v, bool opposite) {
 
 /// Height above which every place is on a touchable face, in radii: a face is about as high as a layer is thick.
 double lowest_place(const Scene& scene) {
-  if (scene.touched == "surface") return -0.3;
+  if (scene.touched != "top") return -0.3;
   return std::min(0.6, round_touchable + 1.1 / scene.cells_x);
 }
 
@@ -429,7 +451,7 @@ bool has_hexahedra(const std::string& body) {
 }
 
 bool has_opposite(const Scene& scene) {
-  return is_round(scene) || (scene.touched == "surface" && scene.support != "bottom");
+  return is_round(scene) || (scene.touched != "top" && scene.support != "bottom");
 }
 
 Body make_body(const Scene& scene, const Change& change) {

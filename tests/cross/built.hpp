@@ -13,6 +13,7 @@
 
 #include <Eigen/Geometry>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct Change {
   double scale = 1.0;                    ///< of all lengths; forces at the same modulus are scale^2 times as large
   bool renumbered = false;               ///< nodes and elements in another order
   bool split = false;                    ///< in two regions of one material
+  bool gravity = false;                  ///< a body load as gravity of the same force
   double pause = 0.0;                    ///< [s] that the second phase of the paths takes longer, at its beginning
 
   Vector3 operator()(const Vector3& x) const { return scale * (linear * x) + shift; }
@@ -41,10 +43,11 @@ struct Body {
   palpate::Mesh<palpate::Tet4> tetrahedra;
   palpate::Mesh<palpate::Hex8> hexahedra;
   palpate::Scene conditions;
-  std::vector<double> moduli;  ///< Young's modulus of every region [Pa]
-  std::string division;        ///< word of the regions as made: one that leaves a region empty is replaced
-  double density = 0.0;        ///< in the change's units, so that the motion takes the same time
-  double size = 0.0;           ///< largest extent [m]
+  std::function<palpate::Scene(double)> conditions_at{};  ///< with a part of Scene::support_travels; empty: none
+  std::vector<double> moduli;                             ///< Young's modulus of every region [Pa]
+  std::string division;  ///< word of the regions as made: one that leaves a region empty is replaced
+  double density = 0.0;  ///< in the change's units, so that the motion takes the same time
+  double size = 0.0;     ///< largest extent [m]
 };
 
 /// Whether an element is a hexahedron.
@@ -70,10 +73,13 @@ palpate::ToolList tools_of(const Scene& scene, const Change& change = {},
                            const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity());
 
 /// The state of a tool in a tick, world frame. The path has three phases: it approaches and goes in to its depth (0 to
-/// 0.45 of the ticks), stays (hold, press: to 0.7), and comes out again (to 1); slide, twist, leap and lost change
-/// the second phase. It is smooth and slow enough that a tissue without inertia follows.
+/// 0.45 of the ticks), stays (hold, press: to 0.7), and comes out again (to 1); slide, twist, leap, lost and frozen
+/// (the device repeats a pose) change the second phase. It is smooth and slow enough that a tissue without inertia
+/// follows.
 palpate::ToolState state_of(const Scene& scene, std::size_t tool, int tick, const Eigen::Isometry3d& pose,
                             const Change& change = {});
+/// Part of Scene::support_travels in a tick: there and back before the tools leave.
+double support_part(const Scene& scene, int tick);
 /// Depth of the tool below the surface at rest at its place in a tick [m], in the change's units; negative outside.
 double depth_of(const Scene& scene, std::size_t tool, int tick, const Change& change = {});
 /// Ticks of the paths, with the pause of the change, which is at the beginning of the second phase.

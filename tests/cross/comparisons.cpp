@@ -160,7 +160,7 @@ std::vector<Finding> check_newton(const Scene& s, const Run& r) {
 /// A press of tissue without memory that takes longer ends with the same force.
 bool ends_at_rest(const Scene& s) {
   const bool vibrates = moves(s.solver) && (s.inertia || s.solver.find("quasi_newton") == std::string::npos);
-  return !vibrates && !is_cut(s) && s.law != "viscoelastic" &&
+  return !vibrates && !is_cut(s) && s.law != "viscoelastic" && s.support_travels == 0.0 &&
          std::all_of(s.tools.begin(), s.tools.end(),
                      [](const ToolValue& t) { return t.path == "press" || t.path == "hold"; });
 }
@@ -169,7 +169,82 @@ std::vector<Finding> check_longer(const Scene& s, const Run& r) {
   return compare_at_rest("longer press", s, r, cross::run(s, {.change = longer}), 0.05, longer);
 }
 bool has_work(const Scene& s) {
-  return moves(s.solver) && s.step >= 0.005;
+  return moves(s.solver) && s.step >= 0.005 && s.support_travels == 0.0;
+}
+/// A body load is gravity of the same force, in every element, also in one that is cut.
+std::vector<Finding> check_gravity(const Scene& s, const Run& r) {
+  return compare_with("gravity in its place", s, r, {.change = {.gravity = true}}, rounding_tolerance(s));
+}
+/// A second servo whose tools are in the air is refused, or changes nothing.
+std::vector<Finding> check_second_servo(const Scene& s, const Run& r) {
+  const Run other = cross::run(s, {.second_servo = true});
+  if (!other.refused.empty()) return {};
+  return compare("second servo", s, r, other, exactly(s));
+}
+/// A recording has the forces that were rendered, and replays to the same ones.
+std::vector<Finding> check_recording(const Scene& s, const Run& r) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("palpate_cross_" + std::to_string(getpid()) + ".csv")).string();
+  const Run replayed_run = cross::run(s, {.cache_file = file, .plays = 2, .recorded = true});
+  std::remove(file.c_str());
+  if (r.refused.empty() && replayed_run.misrecorded >= 0) {
+    const Vector3& force = r.ticks[static_cast<std::size_t>(replayed_run.misrecorded)][0].rendered;
+    return {at("recording", r, replayed_run.misrecorded, 0, 0.0, force.norm(), {})};
+  }
+  return compare("recording", s, r, replayed_run, replayed(s));
+}
+/// Friction changes the force of a press by less than a half of it.
+bool can_slip(const Scene& s) {
+  const bool vibrates = moves(s.solver) && (s.inertia || s.solver.find("quasi_newton") == std::string::npos);
+  return s.friction > 0.0 && !vibrates && !is_cut(s) && s.load == "none" && s.support_moves == 0.0 &&
+         s.support_travels == 0.0 && std::all_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) {
+           return (t.path == "press" || t.path == "hold") && !t.grasps;
+         });
+}
+std::vector<Finding> check_frictionless(const Scene& s, const Run& r) {
+  const Run other = cross::run(s, {.frictionless = true});
+  if (!r.refused.empty() || !other.refused.empty()) return {};
+  const int tick = last_hold(s) - 2;
+  for (std::size_t t = 0; t < s.tools.size(); ++t) {
+    const Vector3 normal = place_of(s, s.tools[t].u, s.tools[t].v, s.tools[t].opposite).normal;
+    const double with = r.ticks[static_cast<std::size_t>(tick)][t].force.dot(normal),
+                 without = other.ticks[static_cast<std::size_t>(tick)][t].force.dot(normal);
+    if (without < 0.1 * force_scale(s, other.peak) || (with > 0.5 * without && with < 1.5 * without)) continue;
+    Finding f = at("without friction", r, tick, static_cast<int>(t), with, without, excuses());
+    f.flagged = f.flagged || at("without friction", other, tick, 0, 0.0, 0.0, excuses()).flagged;
+    return {f};
+  }
+  return {};
+}
+/// What is flagged with every contact is flagged with few, too.
+std::vector<Finding> check_warnings(const Scene& s, const Run& r) {
+  const Run other = cross::run(s, {.capacity = 1000});
+  if (!r.refused.empty() || !other.refused.empty()) return {};
+  const auto warns = [](const Run& run, std::size_t k, std::size_t t) {
+    return run.ticks[k][t].status.has(StatusFlag::large_displacement);
+  };
+  for (std::size_t t = 0; t < s.tools.size(); ++t)
+    for (std::size_t k = 10, missing = 0; k + 10 < r.ticks.size(); ++k) {
+      bool any = false;
+      for (std::size_t i = k - 10; i <= k + 10; ++i) any = any || warns(r, i, t);
+      missing = warns(other, k, t) && !any ? missing + 1 : 0;
+      if (missing < 10) continue;
+      Finding f = at("same warning", r, static_cast<int>(k), static_cast<int>(t), 0.0, 1.0, {});
+      return {f};
+    }
+  return {};
+}
+/// A tissue is not refused because its loads cannot be carried where steps with loads that grow carry them.
+bool has_loads_in_steps(const Scene& s) {
+  return s.solver.starts_with("quasi_newton") && s.load != "none" && s.support_travels == 0.0;
+}
+std::vector<Finding> check_refused(const Scene& s, const Run& r) {
+  if (r.refused != "not_converged") return {};
+  const Run other = cross::run(s, {.loaded_later = true});
+  if (!other.refused.empty()) return {};
+  Finding f = at("refused in vain", other, static_cast<int>(other.ticks.size()) - 1, 0, 1.0, 0.0, excuses());
+  if (f.flagged) return {};
+  return {f};
 }
 std::vector<Finding> check_worker(const Scene& s, const Run& r) {
   return compare_at_rest("worker", s, r, cross::run(s, {.worker = true}), 0.05);
@@ -300,13 +375,20 @@ const std::vector<Oracle>& comparisons() {
       {"read from a cache", 2,
        [](const Scene& s) { return s.solver == "condensed" || s.solver == "sparse_cholesky" || s.solver == "inverse"; },
        check_cache},
-      {"double precision", 1, has_twin, check_double},
+      {"double precision", 0.5, has_twin, check_double},
       {"sparse factorisation", 1, has_other_static, check_sparse},
       {"not cuttable", 1, is_uncut, check_uncut},
       {"all contacts", 3, [](const Scene& s) { return s.capacity == 0; }, check_all_rows},
       {"Newton's method", 2, has_newton, check_newton},
       {"longer press", 2, ends_at_rest, check_longer},
       {"worker", 3, has_work, check_worker},
+      {"gravity in its place", 0.5,
+       [](const Scene& s) { return s.load == "body" && s.pose == "identity" && s.regions == "one"; }, check_gravity},
+      {"refused in vain", 0, has_loads_in_steps, check_refused},
+      {"second servo", 1, is_alone, check_second_servo},
+      {"recording", 2, [](const Scene& s) { return s.tools.size() == 1; }, check_recording},
+      {"without friction", 0.5, can_slip, check_frictionless},
+      {"same warning", 2, [](const Scene& s) { return is_static(s); }, check_warnings},
   };
   return all;
 }

@@ -8,6 +8,7 @@ using namespace palpate;
 
 void add_cut_moving_tetrahedra(Compositions& all) {
   all.push_back(composition<Tet4, Corotational<LinearElastic>, Cuttable<Implicit<QuasiNewton<double>>>>());
+  all.push_back(composition<Tet4, NeoHookean, Cuttable<Implicit<QuasiNewton<double>>>>());
   all.push_back(composition<Tet4, NeoHookeanLogarithmic, Cuttable<Implicit<QuasiNewton<float>>>>());
   all.push_back(composition<Tet4, MooneyRivlin, Cuttable<Implicit<QuasiNewton<double>>>>());
   all.push_back(composition<Smoothed<Tet4>, StVenantKirchhoff, Cuttable<Implicit<QuasiNewton<double>>>>());

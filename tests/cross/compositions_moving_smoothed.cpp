@@ -10,6 +10,7 @@ void add_moving_smoothed(Compositions& all) {
   all.push_back(composition<Smoothed<Tet4>, Corotational<LinearElastic>, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Smoothed<Tet4>, StVenantKirchhoff, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<double>>>());
+  all.push_back(composition<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Smoothed<Tet4>, NeoHookeanLogarithmic, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Smoothed<Tet4>, NeoHookeanIsochoric, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Smoothed<Tet4>, MooneyRivlin, Implicit<QuasiNewton<float>>>());

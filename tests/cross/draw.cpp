@@ -36,6 +36,7 @@ class Draw {
     tissue();
     tools();
     surroundings();
+    hard();
     return scene_;
   }
 
@@ -59,15 +60,16 @@ class Draw {
   /// Half of the scenes have what the documentation recommends first.
   void composition() {
     const auto set = [this](const char* e, const char* l, const char* s) {
+      if (find_composition(e, l, s) == nullptr)
+        throw std::logic_error(std::string("not linked: ") + e + " " + l + " " + s);
       scene_.element = e, scene_.law = l, scene_.solver = s;
-      return find_composition(e, l, s) != nullptr;
     };
     const double p = random_.uniform();
-    if (p < 0.15 && set("smoothed_tet4", "linear", "condensed")) return;
-    if (p < 0.25 && set("tet4", "linear", "condensed")) return;
-    if (p < 0.40 && set("smoothed_tet4", "neo_hookean", "quasi_newton_float")) return;
-    if (p < 0.45 && set("tet4", "linear", "cut_condensed")) return;
-    if (p < 0.50 && set("tet4", "neo_hookean", "cut_quasi_newton")) return;
+    if (p < 0.15) return set("smoothed_tet4", "linear", "condensed");
+    if (p < 0.25) return set("tet4", "linear", "condensed");
+    if (p < 0.40) return set("smoothed_tet4", "neo_hookean", "quasi_newton_float");
+    if (p < 0.45) return set("tet4", "linear", "cut_condensed");
+    if (p < 0.50) return set("tet4", "neo_hookean", "cut_quasi_newton");
     const std::string solver = chance(0.5) ? one_of(compositions()).solver : one_of(linked_solvers());
     std::vector<const Composition*> some;
     for (const Composition& c : compositions())
@@ -183,6 +185,64 @@ class Draw {
       scene_.inertia = chance(0.5);
     }
     if (can_be_cut(scene_.solver) && chance(0.4)) scene_.cuts = integer(1, 3);
+  }
+
+  /// What is hard for a contact, drawn more often than the rest would give it.
+  void hard() {
+    const bool is_moving = moves(scene_.solver);
+    ToolValue& tool = scene_.tools[0];
+    if (chance(0.06)) special_radii();
+    if (scene_.touched == "surface" && chance(0.15)) scene_.touched = "whole";
+    if (!is_moving && !can_be_cut(scene_.solver) && chance(0.15)) scene_.measured = true;
+    if (scene_.measured && chance(0.5)) scene_.corrected = true;
+    if (scene_.tools.size() == 1 && tool.kind == "sphere" && chance(0.08)) deep(tool);
+    if (scene_.tools.size() == 1 && !is_moving && is_box() && chance(0.03)) many_points(tool);
+    if (scene_.tools.size() == 2 && tool.opposite != scene_.tools[1].opposite && chance(0.5)) hard_pinch();
+    if (quasi_static() && scene_.law == "viscoelastic" && chance(0.5)) long_hold(tool);
+    if (quasi_static() && is_box() && chance(0.06)) stretch();
+    if (is_moving && chance(0.06)) hanging_stiff_end();
+  }
+  bool is_box() const { return scene_.body == "block" || scene_.body == "plate" || scene_.body == "lobe"; }
+  bool quasi_static() const { return scene_.solver.starts_with("quasi_newton") && !scene_.inertia; }
+  /// Radii at which a rule of the contact may change.
+  void special_radii() {
+    const double ratio = one_of(std::vector<double>{0.4, 0.5, 0.6, 1.0, 2.0});
+    for (ToolValue& t : scene_.tools)
+      if (t.kind != "blade") t.radius = ratio * scene_.edge;
+  }
+  double thickness() const { return scene_.edge * (has_hexahedra(scene_.body) ? scene_.cells_z : scene_.cells_x); }
+  void deep(ToolValue& tool) {
+    tool.path = "press", tool.grasps = false, scene_.load = "none", scene_.friction = 0.0;
+    tool.depth = rounded(std::min(uniform(1.0, 2.5), 0.8 * thickness() / tool.radius));
+  }
+  /// Facets so short that more of them press than there are rows.
+  void many_points(ToolValue& tool) {
+    scene_.body = "block", scene_.cells_x = scene_.cells_y = 12, scene_.cells_z = 4, scene_.capacity = 0;
+    tool.kind = "sphere", tool.path = "press", tool.radius = 5.0 * scene_.edge, tool.depth = uniform(0.1, 0.5);
+    tool.u = tool.v = 0.5, tool.opposite = tool.grasps = false, scene_.load = "none";
+  }
+  void hard_pinch() {
+    if (chance(0.6)) scene_.friction = uniform(0.1, 1.0);
+    ToolValue& first = scene_.tools[0];
+    first.path = "press", first.grasps = false;
+    if (chance(0.5)) first.depth = rounded(std::min(2.0, 0.6 * thickness() / first.radius));
+    const bool opposite = scene_.tools[1].opposite;
+    scene_.tools[1] = first, scene_.tools[1].opposite = opposite;
+    scene_.load = "none", scene_.support_moves = 0.0;
+  }
+  void long_hold(ToolValue& tool) {
+    scene_.ticks = scene_.rate;
+    if (scene_.tools.size() == 1 && tool.kind == "sphere") deep(tool);
+    tool.depth = std::min(tool.depth, 1.0);
+  }
+  void stretch() {
+    scene_.support = "sides", scene_.support_moves = 0.0, scene_.load = "none", scene_.ticks = scene_.rate;
+    scene_.support_travels = uniform(0.1, 0.6), scene_.friction = 0.0;
+    if (chance(0.5)) scene_.poisson_ratio = 0.499;
+  }
+  void hanging_stiff_end() {
+    scene_.regions = "half", scene_.support = "end", scene_.contrast = logarithmic(1e2, 1e5);
+    scene_.load = "gravity", scene_.load_size = logarithmic(0.005, 0.05), scene_.support_moves = 0.0;
   }
 
   palpate::testing::Random random_;

@@ -51,7 +51,7 @@ Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choo
     }
   for (const Oracle& oracle : oracles()) {
     if (!choose(oracle) || !oracle.applies(scene)) continue;
-    if (!r.refused.empty() && oracle.cost != 1) continue;  // a refusal is compared with others, no more
+    if (!r.refused.empty() && oracle.cost > 1) continue;  // a refusal is compared with others, no more
     std::vector<Finding> found = oracle.check(scene, r);
     const auto silent = std::find_if(found.begin(), found.end(), [](const Finding& f) { return !f.flagged; });
     if (silent != found.end())

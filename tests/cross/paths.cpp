@@ -11,7 +11,7 @@ namespace cross {
 
 namespace {
 
-constexpr int leap_ticks = 5, lost_ticks = 8;
+constexpr int leap_ticks = 5, lost_ticks = 8, frozen_ticks = 40;
 constexpr double leap_radii = 10.0, twist_angle = 0.6;
 
 int part_of(const Scene& scene, double part) {
@@ -116,9 +116,18 @@ double depth_of(const Scene& scene, std::size_t tool, int tick, const Change& ch
   return unit * (-0.5 + (value.depth + 0.5) * part);
 }
 
+double support_part(const Scene& scene, int tick) {
+  const double part = ratio(tick, part_of(scene, 0.7));
+  return smooth(2.0 * std::min(part, 1.0 - part));
+}
+
 palpate::ToolState state_of(const Scene& scene, std::size_t tool, int tick, const Eigen::Isometry3d& pose,
                             const Change& change) {
   const ToolValue& value = scene.tools[tool];
+  const double now = ratio(tick, scene.rate);
+  if (const int frozen = since_middle(scene, tick, change);
+      value.path == "frozen" && frozen >= 0 && frozen < frozen_ticks)
+    tick -= frozen;
   const Place place = place_of_tool(scene, value);
   const double depth = depth_of(scene, tool, tick, change) / change.scale;
   const double moved = value.path == "slide" ? value.travel * value.radius * excursion(scene, tick, change) : 0.0;
@@ -130,7 +139,7 @@ palpate::ToolState state_of(const Scene& scene, std::size_t tool, int tick, cons
   palpate::ToolState state;
   state.position = pose * change(place.point + (reach(value) - depth) * place.normal + moved * place.along);
   state.orientation = orientation_of(pose.linear(), change.direction(place.normal), angle);
-  state.time = state.now = static_cast<double>(tick) / static_cast<double>(scene.rate);
+  state.time = ratio(tick, scene.rate), state.now = now;
   state.valid = !(value.path == "lost" && since >= 0 && since < lost_ticks);
   const bool grasps = value.grasps && tick >= first_hold(scene) && tick < last_hold(scene, change) + hold / 2;
   state.buttons = grasps ? 1 : 0;

@@ -25,10 +25,19 @@ bool all_paths(const Scene& s, std::initializer_list<const char*> allowed) {
     return std::find(allowed.begin(), allowed.end(), t.path) != allowed.end();
   });
 }
-/// One tool that presses tissue without loads, as far as the direction of the force follows from the path alone.
+/// Two tools that press at one place from opposite sides.
+bool is_pinch(const Scene& s) {
+  return s.tools.size() == 2 && has_opposite(s) && s.tools[0].opposite != s.tools[1].opposite &&
+         s.tools[0].u == s.tools[1].u && s.tools[0].v == s.tools[1].v;
+}
+/// One tool, or a pinch, that presses tissue without loads, as far as the direction of the force follows from the path
+/// alone.
+bool is_plain_press(const Scene& s) {
+  return (s.tools.size() == 1 || is_pinch(s)) && s.tools[0].kind != "blade" && !grasps(s) && s.load == "none" &&
+         s.support_moves == 0.0 && s.support_travels == 0.0 && !is_cut(s) && all_paths(s, {"press", "hold"});
+}
 bool is_one_press(const Scene& s) {
-  return s.tools.size() == 1 && s.tools[0].kind != "blade" && !s.tools[0].grasps && s.load == "none" &&
-         s.support_moves == 0.0 && !is_cut(s) && all_paths(s, {"press", "hold"});
+  return s.tools.size() == 1 && is_plain_press(s);
 }
 
 /// Flags that excuse a force that pulls or swings, or gives energy. Coarse facets do not cause this, except where the
@@ -76,12 +85,18 @@ std::vector<Finding> first_failure(const char* name, const Run& r, int from, int
 
 /// A tool is pushed out of the tissue, never pulled in.
 std::vector<Finding> check_pull(const Scene& s, const Run& r) {
-  const Vector3 out = place_of(s, s.tools[0].u, s.tools[0].v, s.tools[0].opposite).normal;
-  const auto pulls = [&](int k, double& found, double&) {
-    found = r.ticks[static_cast<std::size_t>(k)][0].force.dot(out);
-    return found < -0.02 * force_scale(s, r.peak);
-  };
-  return first_failure("no pull", r, 0, static_cast<int>(r.ticks.size()), 0, pulls, doubts_of_direction(s));
+  std::vector<Finding> findings;
+  for (std::size_t t = 0; t < s.tools.size() && findings.empty(); ++t) {
+    const Vector3 out = place_of(s, s.tools[t].u, s.tools[t].v, s.tools[t].opposite).normal;
+    findings = first_failure(
+        "no pull", r, 0, static_cast<int>(r.ticks.size()), t,
+        [&](int k, double& found, double&) {
+          found = r.ticks[static_cast<std::size_t>(k)][t].force.dot(out);
+          return found < -0.02 * force_scale(s, r.peak);
+        },
+        doubts_of_direction(s));
+  }
+  return findings;
 }
 
 /// The force grows while the tool goes in. Between the steps of tissue that moves it is that of the last tangent.
@@ -102,11 +117,16 @@ double surface_margin(const Scene& s) {
 
 /// A tool that stays inside the tissue is pushed.
 std::vector<Finding> check_lost(const Scene& s, const Run& r) {
-  return first_failure("not lost", r, first_hold(s), last_hold(s), 0, [&](int k, double& found, double& expected) {
-    const ToolTick& t = r.ticks[static_cast<std::size_t>(k)][0];
-    found = t.force.norm(), expected = 0.02 * s.youngs_modulus * t.depth * std::sqrt(s.tools[0].radius * t.depth);
-    return t.depth > 0.1 * s.tools[0].radius && t.depth > 0.02 * s.edge + surface_margin(s) && found < 0.01 * expected;
-  });
+  std::vector<Finding> findings;
+  for (std::size_t i = 0; i < s.tools.size() && findings.empty(); ++i)
+    findings =
+        first_failure("not lost", r, first_hold(s), last_hold(s), i, [&](int k, double& found, double& expected) {
+          const ToolTick& t = r.ticks[static_cast<std::size_t>(k)][i];
+          const double radius = s.tools[i].radius;
+          found = t.force.norm(), expected = 0.02 * s.youngs_modulus * t.depth * std::sqrt(radius * t.depth);
+          return t.depth > 0.1 * radius && t.depth > 0.02 * s.edge + surface_margin(s) && found < 0.01 * expected;
+        });
+  return findings;
 }
 
 /// There is no force before the tool touches.
@@ -142,16 +162,20 @@ std::vector<Finding> check_work(const Scene& s, const Run& r) {
 std::vector<Finding> check_settled(const Scene& s, const Run& r) {
   const int from = (2 * first_hold(s) + 3 * last_hold(s)) / 5, to = last_hold(s);
   for (std::size_t t = 0; t < s.tools.size(); ++t) {
-    double swing = 0.0;  // changes that are reversed
+    // What it falls and rises again, or rises and falls again; a force that only creeps has none of one of the two.
+    Vector3 mean = Vector3::Zero();
+    for (int k = from; k < to; ++k) mean += r.ticks[static_cast<std::size_t>(k)][t].force;
+    if (mean.squaredNorm() == 0.0) continue;
+    const Vector3 direction = mean.normalized();
+    double most = -std::numeric_limits<double>::infinity(), least = -most, falls = 0.0, rises = 0.0;
     int worst = from;
-    for (int k = from + 2; k < to; ++k) {
-      const auto f = [&](int i) { return r.ticks[static_cast<std::size_t>(i)][t].force; };
-      const Vector3 before = f(k - 1) - f(k - 2), now = f(k) - f(k - 1);
-      if (now.dot(before) >= 0.0) continue;
-      const double one = std::min(now.norm(), before.norm());
-      if (one > swing) swing = one, worst = k;
+    for (int k = from; k < to; ++k) {
+      const double f = r.ticks[static_cast<std::size_t>(k)][t].force.dot(direction);
+      most = std::max(most, f), least = std::min(least, f);
+      if (std::max(most - f, f - least) > std::max(falls, rises)) worst = k;
+      falls = std::max(falls, most - f), rises = std::max(rises, f - least);
     }
-    if (swing > 0.02 * force_scale(s, r.peak))
+    if (const double swing = std::min(falls, rises); swing > 0.02 * force_scale(s, r.peak))
       return {at("settles", r, worst, static_cast<int>(t), swing, r.peak, doubts_of_direction(s))};
   }
   return {};
@@ -165,6 +189,33 @@ std::vector<Finding> check_penetration(const Scene& s, const Run& r) {
   return {at("no penetration", r, last_hold(s) - 1, 0, r.penetration, 0.0, doubts())};
 }
 
+/// Elastic tissue is where it was when nothing presses any more.
+std::vector<Finding> check_back(const Scene& s, const Run& r) {
+  if (!(r.left > 0.05 * s.edge)) return {};
+  return {at("comes back", r, static_cast<int>(r.ticks.size()) - 1, 0, r.left, 0.0, excuses())};
+}
+
+/// A tick of tissue at rest whose force is that of the tick before has converged.
+std::vector<Finding> check_converged(const Scene& s, const Run& r) {
+  const int to = last_hold(s), from = to - 10;
+  for (std::size_t t = 0; t < s.tools.size(); ++t) {
+    bool still = r.peak > 0.0;
+    for (int k = from; k < to && still; ++k) {
+      const ToolTick &a = r.ticks[static_cast<std::size_t>(k)][t], &b = r.ticks[static_cast<std::size_t>(k - 1)][t];
+      still = a.status.has(StatusFlag::solver_not_converged) && a.proxy.isApprox(b.proxy, 1e-9) &&
+              (a.force - b.force).norm() < 1e-6 * force_scale(s, r.peak);
+    }
+    if (still) return {at("still but not converged", r, to - 1, static_cast<int>(t), 1.0, 0.0, {})};
+  }
+  return {};
+}
+
+/// The report of the set-up has the memory.
+std::vector<Finding> check_report(const Scene&, const Run& r) {
+  if (r.has_report) return {};
+  return {{"report", 0, 0, 0.0, 1.0, false, ""}};
+}
+
 }  // namespace
 
 const std::vector<Oracle>& laws_of_physics() {
@@ -172,30 +223,38 @@ const std::vector<Oracle>& laws_of_physics() {
       {"finite", 0, [](const Scene&) { return true; }, check_finite},
       {"action and reaction", 0, [](const Scene&) { return true; }, check_reaction},
       // A tool that sticks in its dent is also drawn back.
-      {"no pull", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s) && s.friction == 0.0; },
+      {"no pull", 0, [](const Scene& s) { return is_plain_press(s) && !has_inertia(s) && s.friction == 0.0; },
        check_pull},
       {"grows with depth", 0,
-       [](const Scene& s) {
-         return is_one_press(s) && !has_inertia(s) && !remembers(s) && s.friction == 0.0 && s.tools[0].depth <= 1.0;
-       },
+       [](const Scene& s) { return is_one_press(s) && !has_inertia(s) && !remembers(s) && s.friction == 0.0; },
        check_monotone},
-      {"not lost", 0, [](const Scene& s) { return is_one_press(s) && !has_inertia(s); }, check_lost},
+      {"not lost", 0, [](const Scene& s) { return is_plain_press(s) && !has_inertia(s); }, check_lost},
       {"no force in the air", 0,
        [](const Scene& s) {
-         return s.load == "none" && s.support_moves == 0.0 && s.tools.size() == 1 && !is_cut(s) && s.jitter == 0.0 &&
-                !s.tools[0].opposite;
+         return s.load == "none" && s.support_moves == 0.0 && s.support_travels == 0.0 && s.tools.size() == 1 &&
+                !is_cut(s) && s.jitter == 0.0 && !s.tools[0].opposite;
        },
        check_free},
       {"work of a closed path", 0,
        [](const Scene& s) {
-         return all_paths(s, {"press", "hold", "slide"}) && s.cuts == 0 && s.load == "none" && s.support_moves == 0.0;
+         return all_paths(s, {"press", "hold", "slide"}) && s.cuts == 0 && s.load == "none" && s.support_moves == 0.0 &&
+                s.support_travels == 0.0;
        },
        check_work},
       {"settles", 0,
        [](const Scene& s) {
-         return all_paths(s, {"press", "hold"}) && !has_inertia(s) && !is_cut(s);
+         return all_paths(s, {"press", "hold"}) && !has_inertia(s) && !is_cut(s) && s.support_travels == 0.0;
        },
        check_settled},
+      {"comes back", 0,
+       [](const Scene& s) { return moves(s.solver) && !has_inertia(s) && !remembers(s) && !is_cut(s) && !grasps(s); },
+       check_back},
+      {"still but not converged", 0,
+       [](const Scene& s) {
+         return !moves(s.solver) && !is_cut(s) && all_paths(s, {"press", "hold"});
+       },
+       check_converged},
+      {"report", 0, [](const Scene&) { return true; }, check_report},
       {"no penetration", 0,
        [](const Scene& s) {
          return all_paths(s, {"press", "hold"}) && !is_cut(s) && !grasps(s) && !has_inertia(s);

@@ -226,14 +226,15 @@ class Program {
            text_of(part * s_.edge * s_.cells_x) + "; };");
     };
     lambda("low", "<", -0.4);
-    if (s_.touched != "surface") lambda("high", ">", -0.2);
+    if (s_.touched == "top") lambda("high", ">", -0.2);
     line("Group support{\"support\", 2, {}, {}, {}}, touchable{\"touchable\", 2, {}, {}, {}};");
     line("for (const BoundaryFace& face : extract_boundary<Tet4>(mesh)) {");
     inner("const std::vector<NodeId> nodes(face.nodes.begin(), face.nodes.end());");
     inner("std::ranges::copy_if(nodes, std::back_inserter(support.nodes), low);");
     inner("if (std::ranges::all_of(nodes, low)) support.faces.push_back(nodes);");
-    inner(s_.touched == "surface" ? "if (std::ranges::all_of(nodes, low)) continue;"
-                                  : "if (!std::ranges::all_of(nodes, high)) continue;");
+    if (s_.touched != "whole")
+      inner(s_.touched == "surface" ? "if (std::ranges::all_of(nodes, low)) continue;"
+                                    : "if (!std::ranges::all_of(nodes, high)) continue;");
     inner("touchable.faces.push_back(nodes);");
     inner("touchable.nodes.insert(touchable.nodes.end(), nodes.begin(), nodes.end());");
     line("}");
@@ -339,15 +340,16 @@ class Program {
   }
   std::vector<std::string> touchable_groups() const {
     if (is_round(s_)) return {"touchable"};
-    if (s_.touched != "surface") return {"z1"};
+    if (s_.touched == "top") return {"z1"};
     std::vector<std::string> groups;
     for (const char* side : {"x0", "x1", "y0", "y1", "z0", "z1"})
-      if (std::ranges::count(support_groups(), side) == 0) groups.emplace_back(side);
+      if (s_.touched == "whole" || std::ranges::count(support_groups(), side) == 0) groups.emplace_back(side);
     return groups;
   }
 
   void conditions() {
     const palpate::Scene& c = body_.conditions;
+    if (s_.support_travels != 0.0) return moving_conditions();
     line("Scene scene;");
     std::string on_supports;
     for (const std::string& group : support_groups())
@@ -371,12 +373,25 @@ class Program {
            "});");
     if (s_.load == "swelling") line("scene.expand(everywhere, " + text_of(s_.load_size) + ");");
   }
+  /// Of a support that goes away by `x`, and comes back.
+  void moving_conditions() {
+    std::string touched;
+    for (const std::string& group : touchable_groups()) touched += on_touchable(quoted(group));
+    line("const auto scene_at = [](double x) {");
+    inner("return Scene().fix(\"x0\").prescribe(\"x1\", {x, 0.0, 0.0})" + touched + ";");
+    line("};");
+    line("const Scene scene = scene_at(0.0);");
+  }
   std::string prescribed() const {
     const palpate::Components& values = body_.conditions.prescribed().at(0).values;
     return text_of(Vector3(values[0].value(), values[1].value(), values[2].value()));
   }
   std::string on_touchable(const std::string& group) const {
-    std::string text = ".touch(" + group + ")";
+    std::string text = ".touch(" + group;
+    if (body_.conditions.touch_radius() > 0.0)
+      text += ", {.radius = " + text_of(body_.conditions.touch_radius()) +
+              (body_.conditions.is_pinched() ? ", .pinched = true}" : "}");
+    text += ")";
     for (const auto& load : body_.conditions.pressures())
       text += ".pressure(" + group + ", " + text_of(load.pressure) + ")";
     for (const auto& load : body_.conditions.tractions())
@@ -423,7 +438,7 @@ class Program {
     if (s_.threads != 1) options.push_back(member("threads", s_.threads));
     if (is_one_of(s_.solver, {"condensed_cholesky", "condensed_cg", "sparse_cholesky", "cg", "matrix_free_cg"}))
       options.emplace_back(".columns = ColumnFill::synchronous");
-    if (s_.corrected) {
+    if (s_.measured || s_.corrected) {
       headers_.insert("palpate/model/static/measured_force_error.hpp");
       options.emplace_back(".force_error = measured_force_error()");
     }
@@ -535,7 +550,16 @@ class Program {
     line("for (int tick = 0; tick < " + text_of(s_.ticks) + "; ++tick) {");
     inner("const double now = tick / " + text_of(double(s_.rate)) + ";");
     cuts();
-    if (moves(s_.solver)) inner("for (; due <= now; due += tissue.step()) tissue.background_work();");
+    if (s_.support_travels != 0.0) {
+      inner("const double away = tick / " + divisor(part_of(0.7)) + ";");
+      inner("for (; due <= now; due += tissue.step()) {");
+      inner("  tissue.set_conditions(scene_at(" + text_of(s_.support_travels * s_.edge * s_.cells_x) +
+            " * smooth(2.0 * std::min(away, 1.0 - away))));");
+      inner("  tissue.background_work();");
+      inner("}");
+    } else if (moves(s_.solver)) {
+      inner("for (; due <= now; due += tissue.step()) tissue.background_work();");
+    }
     if (s_.solver == "cut_condensed") {
       inner("for (; due <= now; due += 1e-3)");
       inner("  while (tissue.background_work().worked) continue;");

@@ -34,6 +34,14 @@ std::vector<double> graded(double low, double high, double centre, double reach,
   return x;
 }
 
+/// Two equal tools at one place from opposite sides.
+bool is_equal_pinch(const Scene& s) {
+  if (s.tools.size() != 2 || !has_opposite(s)) return false;
+  ToolValue other = s.tools[1];
+  other.opposite = !other.opposite;
+  return other == s.tools[0];
+}
+
 double contact_radius(const Scene& s) {
   return std::sqrt(s.tools[0].depth) * s.tools[0].radius;
 }
@@ -42,8 +50,10 @@ double contact_radius(const Scene& s) {
 
 bool has_reference(const Scene& s) {
   const bool box = s.body == "block" || s.body == "plate" || s.body == "lobe";
-  const bool pressed = s.tools.size() == 1 && s.tools[0].kind == "sphere" && !s.tools[0].opposite &&
-                       !s.tools[0].grasps && (s.tools[0].path == "press" || s.tools[0].path == "hold");
+  const bool pressed = (s.tools.size() == 1 && !s.tools[0].opposite) || is_equal_pinch(s);
+  for (const ToolValue& t : s.tools)
+    if ((t.kind != "sphere" && t.kind != "capsule") || t.grasps || (t.path != "press" && t.path != "hold"))
+      return false;
   return box && pressed && s.law == "linear" && !moves(s.solver) && s.solver != "stiffening" && s.regions == "one" &&
          s.friction == 0.0 && s.load == "none" && s.support_moves == 0.0 && s.cuts == 0 && s.poisson_ratio <= 0.49 &&
          s.tools[0].depth <= 0.5 && s.tools[0].depth >= 0.03;
@@ -54,15 +64,24 @@ Body reference_body(const Scene& s) {
   const Place place = place_of(s, s.tools[0].u, s.tools[0].v, false);
   const double a = contact_radius(s), fine = a / 4.0, reach = 1.3 * a;
   const double half_x = 0.5 * size[0], half_y = 0.5 * size[1];  // boxes are in the middle of x and y: bodies.cpp
-  Mesh<Tet4> mesh =
-      box_tet4(graded(-half_x, half_x, place.point[0], reach, fine),
-               graded(-half_y, half_y, place.point[1], reach, fine), graded(0.0, size[2], size[2], reach, fine));
+  const double length = s.tools[0].kind == "capsule" ? 2.0 * s.tools[0].radius : 0.0;  // of one end
+  const bool pinch = s.tools.size() == 2;
+  std::vector<double> z = graded(pinch ? 0.5 * size[2] : 0.0, size[2], size[2], reach, fine);
+  if (pinch)
+    for (std::size_t i = z.size() - 1; i > 0; --i) z.push_back(size[2] - z[i]);
+  std::sort(z.begin(), z.end());
+  Mesh<Tet4> mesh = box_tet4(graded(-half_x, half_x, place.point[0], reach + length, length > 0.0 ? 3.0 * fine : fine),
+                             graded(-half_y, half_y, place.point[1], reach, fine), z);
   Body body;
   if (s.support == "bottom") body.conditions.fix("z0");
   if (s.support != "bottom") body.conditions.fix("x0");
   if (s.support == "sides") body.conditions.fix("x1");
-  const Vector3 half = Vector3::Constant(2.2 * a + fine), top(place.point[0], place.point[1], size[2]);
-  body.conditions.touch(where::box(top - half.cwiseProduct(Vector3(1.0, 1.0, 0.1)), top + half));
+  const Vector3 half = Vector3(2.2 * a + fine + length, 2.2 * a + fine, 0.1 * fine),
+                top(place.point[0], place.point[1], size[2]), bottom(place.point[0], place.point[1], 0.0);
+  if (pinch)
+    body.conditions.touch(where::box(top - half, top + half) || where::box(bottom - half, bottom + half));
+  else
+    body.conditions.touch(where::box(top - half, top + half));
   body.tetrahedra = std::move(mesh);
   body.tetrahedra.region_names = {"first"};
   body.moduli = {s.youngs_modulus};
@@ -80,8 +99,12 @@ std::vector<Finding> check_reference(const Scene& s, const Run& r) {
   if (!fine.refused.empty()) return {};
   const auto tick = static_cast<std::size_t>(last_hold(s) - 2);
   const ToolTick &a = r.ticks[tick][0], &b = fine.ticks[tick][0];
-  Finding f = at("reference", r, static_cast<int>(tick), 0, a.force.norm(), b.force.norm(), doubts());
-  const double error = (a.force - b.force).norm(), right = b.force.norm();
+  Finding f = at("reference", r, static_cast<int>(tick), 0, (s.corrected ? a.rendered : a.force).norm(), b.force.norm(),
+                 doubts());
+  // A force that is corrected is what the device gets.
+  const bool limited = a.status.has(StatusFlag::saturated) || a.status.has(StatusFlag::slew_limited);
+  const Vector3& given = s.corrected && !limited ? a.rendered : a.force;
+  const double error = (given - b.force).norm(), right = b.force.norm();
   const bool is_bounded = a.bound > 0.0 && std::isfinite(a.bound) && error <= a.bound;
   if (error <= 0.1 * right || is_bounded) {
     if (!(f.flagged && error <= 0.05 * right)) return {};

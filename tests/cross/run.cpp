@@ -3,6 +3,8 @@
 #include "reference.hpp"
 
 #include <palpate/core/setup_error.hpp>
+#include <palpate/device/recorder.hpp>
+#include <palpate/device/replay_device.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -27,7 +29,7 @@ ServoOptions options_of(const Scene& scene, const Manner& manner) {
   ServoOptions options;
   options.rate = scene.rate;
   options.coupling_stiffness = scene.coupling * manner.change.scale;
-  options.contact.friction = scene.friction;
+  options.contact.friction = manner.frictionless ? 0.0 : scene.friction;
   options.contact.capacity = manner.capacity >= 0 ? manner.capacity : scene.capacity;
   options.corrected_force = scene.corrected;
   if (std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolValue& t) { return t.grasps; }))
@@ -44,6 +46,16 @@ BladeSweep sweep_of(const Scene& scene, int number, const Eigen::Isometry3d& pos
   return {at(-half, -deep), at(half, -deep), at(-half, scene.edge), at(half, scene.edge)};
 }
 
+/// The device of a recording.
+struct Script {
+  ToolState state{};
+  ToolState read() noexcept { return state; }
+  Status write(const GatedForce&) noexcept { return {}; }
+  DeviceLimits limits() const noexcept { return {}; }
+  void start() {}
+  void stop() noexcept {}
+};
+
 /// One run of a scene.
 class Player {
  public:
@@ -55,7 +67,9 @@ class Player {
     options.cache_file = manner.cache_file;
     options.member = manner.member.empty() ? scene.member : manner.member;
     options.axes = manner.change.linear;
-    const Body body = manner.reference ? reference_body(scene) : make_body(scene, manner.change);
+    Scene at_start = scene;
+    if (manner.loaded_later) at_start.load = "none";
+    const Body body = manner.reference ? reference_body(scene) : make_body(at_start, manner.change);
     const Composition* composition = manner.reference ? find_composition("tet10", "linear", "condensed")
                                                       : find_composition(scene.element, scene.law, solver);
     if (composition == nullptr)
@@ -63,6 +77,13 @@ class Player {
     Scene built = scene;
     built.solver = composition->solver;
     built.element = composition->element;
+    conditions_at_ = body.conditions_at;
+    if (manner.loaded_later)
+      conditions_at_ = [&scene, change = manner.change](double part) {
+        Scene loaded = scene;
+        loaded.load_size *= part;
+        return make_body(loaded, change).conditions;
+      };
     tissue_ = composition->make(built, body, options);
     tissue_->set_pose(pose_);
     tools_ = tools_of(scene, manner.change, pose_);
@@ -71,16 +92,41 @@ class Player {
 
   Run play() {
     servo_ = tissue_->servo(tools_, servo_options_);
+    if (manner_.second_servo) second_ = tissue_->servo(tools_, servo_options_);
     for (int play = 0; play < manner_.plays; ++play) {
       if (play > 0) restart();
       run_ = {};
+      if (manner_.recorded) start_recording(play);
       one_play();
+      if (manner_.recorded) end_recording(play);
     }
+    run_.misrecorded = misrecorded_;
+    const SetupReport& report = tissue_->report();
+    run_.has_report =
+        report.kept_dofs == 0 || report.stiffness_bytes + report.solver_bytes + report.compliance_bytes > 0;
     run_.notes = servo_->notes();
     return std::move(run_);
   }
 
  private:
+  void start_recording(int play) {
+    if (play == 0) {
+      recorder_.emplace(script_, static_cast<std::size_t>(ticks_of(scene_, manner_.change)));
+      recorder_->start();
+    } else {
+      replay_.emplace(manner_.cache_file);
+    }
+  }
+  void end_recording(int play) {
+    if (play > 0) return;
+    recorder_->write(GatedForce());  // as a loop ends
+    recorder_->stop();
+    recorder_->write_csv(manner_.cache_file);
+    const auto recorded = read_recording(manner_.cache_file);
+    for (std::size_t k = 0; k < recorded.size() && misrecorded_ < 0; ++k)
+      if (recorded[k].force != rendered_.at(k)) misrecorded_ = static_cast<int>(k);
+    recorder_.reset();
+  }
   void restart() {
     worker_.reset();
     servo_->reset();
@@ -95,18 +141,37 @@ class Player {
     if (manner_.worker) worker_ = tissue_->worker();
     const int ticks = ticks_of(scene_, manner_.change);
     double due = 0.0;  // of the next piece of background work
+    std::vector<Vector3> start;
     auto wake = std::chrono::steady_clock::now();
     for (int tick = 0; tick < ticks; ++tick) {
       const double now = static_cast<double>(tick) / scene_.rate;
       for (int i = 0; i < scene_.cuts; ++i)
         if (tick == (i + 1) * ticks / (scene_.cuts + 2)) tissue_->cut(sweep_of(scene_, i, pose_, manner_.change));
       if (!worker_ && tissue_->interval() > 0.0)
-        for (; due <= now; due += tissue_->interval()) tissue_->work();
+        for (; due <= now; due += tissue_->interval()) {
+          if (conditions_at_) tissue_->set_conditions(conditions_at_(part_at(tick)));
+          tissue_->work();
+        }
+      if (tick == 0) start = rest();
       one_tick(tick);
       wake += std::chrono::microseconds(1000000 / scene_.rate);
       if (worker_) std::this_thread::sleep_until(wake);
     }
+    const bool steps = !worker_ && tissue_->interval() > 0.0;
     worker_.reset();
+    if (!steps || start.empty()) return;
+    for (int step = 0; step < 5; ++step) tissue_->work();
+    const std::vector<Vector3> end = rest();
+    for (std::size_t i = 0; i < std::min(start.size(), end.size()); ++i)
+      run_.left = std::max(run_.left, (start[i] - end[i]).norm() / manner_.change.scale);
+  }
+  double part_at(int tick) const {
+    if (!manner_.loaded_later) return support_part(scene_, tick);
+    return std::min(1.0, 2.0 * tick / scene_.ticks);
+  }
+  /// The surface of moving tissue without contact.
+  std::vector<Vector3> rest() {
+    return moves(scene_.solver) && !is_cut(scene_) ? tissue_->surface({}) : std::vector<Vector3>();
   }
 
   Vector3 back(const Vector3& force) const {
@@ -117,7 +182,11 @@ class Player {
     const std::size_t count = scene_.tools.size();
     std::vector<ToolState> states;
     for (std::size_t t = 0; t < count; ++t) states.push_back(state_of(scene_, t, tick, pose_, manner_.change));
+    if (recorder_) script_.state = states[0], states[0] = recorder_->read();
+    if (replay_) states[0] = replay_->read();
     const auto forces = servo_->tick(states);
+    if (recorder_) recorder_->write(forces[0]), rendered_.push_back(forces[0].force());
+    if (second_) second_tick(states);
     const double s = manner_.change.scale;
     std::vector<ToolTick> record(count);
     Vector3 sum = Vector3::Zero();
@@ -132,6 +201,7 @@ class Player {
       r.force = back(force) / (s * s);
       // A torque is a pseudovector: a reflection reverses it.
       r.torque = manner_.change.linear.determinant() * back(torque) / (s * s * s);
+      r.rendered = back(forces[t].force()) / (s * s);
       r.status = forces[t].status;
       r.bound = servo_->force_error(t).bound / (s * s);
       r.depth = depth_of(scene_, t, tick);
@@ -147,6 +217,16 @@ class Player {
     if (tick == last_hold(scene_) - 1) run_.penetration = penetration(snapshot) / s;
     add_work(record);
     run_.ticks.push_back(std::move(record));
+  }
+
+  /// Of a servo whose tools are far away.
+  void second_tick(std::vector<ToolState> states) {
+    for (std::size_t t = 0; t < states.size(); ++t) {
+      const Place place = place_of(scene_, scene_.tools[t].u, scene_.tools[t].v, scene_.tools[t].opposite);
+      states[t].position += 20.0 * manner_.change.scale * scene_.tools[t].radius *
+                            (pose_.linear() * manner_.change.direction(place.normal));
+    }
+    (void)second_->tick(states);
   }
 
   /// Work by the mean of the forces before and after a motion.
@@ -175,7 +255,13 @@ class Player {
   ToolList tools_{SphereTool{}};
   ServoOptions servo_options_;
   std::unique_ptr<Tissue> tissue_;
-  std::unique_ptr<HapticServo> servo_;
+  std::unique_ptr<HapticServo> servo_, second_;
+  std::function<palpate::Scene(double)> conditions_at_;
+  Script script_;
+  std::optional<Recorder<Script>> recorder_;
+  std::optional<ReplayDevice> replay_;
+  std::vector<Vector3> rendered_;  // of the play that is recorded
+  int misrecorded_ = -1;
   std::unique_ptr<BackgroundWorker> worker_;
   Run run_;
 };

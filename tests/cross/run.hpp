@@ -17,10 +17,14 @@ struct Manner {
   int threads = 0;       ///< the same; 0: the scene's
   int capacity = -1;     ///< the same; -1: the scene's
   std::string cache_file{};
-  int plays = 1;           ///< with a reset of servo and tissue in between; the last one is recorded
-  bool new_servo = false;  ///< another servo for every play
-  bool worker = false;     ///< steps and cuts in a background thread, ticks in real time
-  bool reference = false;  ///< on a fine graded mesh of quadratic elements (reference.hpp)
+  int plays = 1;              ///< with a reset of servo and tissue in between; the last one is recorded
+  bool new_servo = false;     ///< another servo for every play
+  bool second_servo = false;  ///< another servo on the same tissue, whose tools stay in the air
+  bool recorded = false;      ///< of two plays the first is recorded to a file, the second reads it
+  bool frictionless = false;
+  bool loaded_later = false;  ///< of tissue that moves: set up without loads, which then grow
+  bool worker = false;        ///< steps and cuts in a background thread, ticks in real time
+  bool reference = false;     ///< on a fine graded mesh of quadratic elements (reference.hpp)
 };
 
 /// A tool in a tick.
@@ -28,6 +32,7 @@ struct ToolTick {
   Vector3 position, proxy;   ///< [m]
   Vector3 force, torque;     ///< of the contact, before the gate [N], [N m]
   palpate::Status status{};  ///< with what the gate reported
+  Vector3 rendered;          ///< force to the device [N]
   double bound = 0.0;        ///< of the error of the force [N]
   double depth = 0.0;        ///< below the surface at rest [m]
   bool finite = true;        ///< contact force and rendered force
@@ -40,6 +45,9 @@ struct Run {
   std::vector<double> imbalance;             ///< per tick: forces on vertices and tools together [N]
   double peak = 0.0;                         ///< largest force of any tool [N]
   double penetration = 0.0;                  ///< of surface vertices in spheres, at the end of the second phase [m]
+  double left = 0.0;                         ///< displacement of the surface some steps after the end [m]
+  int misrecorded = -1;                      ///< first tick whose force in a recording is not that rendered
+  bool has_report = true;                    ///< the set-up report has memory where degrees of freedom are kept
   std::vector<std::string> notes;            ///< of the servo
   double work_in = 0.0;                      ///< largest work that the hands had done until any tick [J]
   double work = 0.0;                         ///< of the hands on the tissue over the whole path [J]

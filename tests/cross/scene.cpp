@@ -76,7 +76,7 @@ const std::vector<std::string>& words_of(std::string_view name) {
   static const std::map<std::string, std::vector<std::string>, std::less<>> words{
       {"body", {"block", "plate", "lobe", "dome", "tube", "sphere", "organ"}},
       {"regions", {"one", "layer", "half", "inclusion"}},
-      {"touched", {"top", "surface"}},
+      {"touched", {"top", "surface", "whole"}},
       {"support", {"bottom", "sides", "end"}},
       {"element", {"tet4", "smoothed_tet4", "tet10", "hex8", "hex20", "mean_dilatation_hex8"}},
       {"law",
@@ -90,7 +90,7 @@ const std::vector<std::string>& words_of(std::string_view name) {
       {"pose", {"identity", "rotated"}},
       {"member", {"alone", "group", "pair", "adaptor"}},
       {"kind", {"sphere", "capsule", "plate", "blade"}},
-      {"path", {"press", "hold", "slide", "twist", "leap", "lost"}}};
+      {"path", {"press", "hold", "slide", "twist", "leap", "lost", "frozen"}}};
   static const std::vector<std::string> none;
   const auto found = words.find(name);
   return found == words.end() ? none : found->second;

@@ -14,7 +14,7 @@ struct ToolValue {
   std::string kind = "sphere";  ///< sphere, capsule, plate, blade
   double radius = 6e-3;         ///< [m]; of a plate and a blade: half of their length is two radii
   bool grasps = false;          ///< from the deepest point of the path on
-  std::string path = "press";   ///< press, hold, slide, twist, leap, lost
+  std::string path = "press";   ///< press, hold, slide, twist, leap, lost, frozen
   double u = 0.5, v = 0.5;      ///< place
   double depth = 0.25;          ///< deepest, in radii; of a blade: [edge lengths of the body]
   double travel = 0.0;          ///< along the surface during a slide, in radii
@@ -33,20 +33,22 @@ struct Scene {
   int slivers = 0;                            ///< tetrahedra made almost flat
   std::string regions = "one";                ///< one, layer, half, inclusion
   double contrast = 1.0;                      ///< Young's modulus of the second region, relative
-  std::string touched = "top";                ///< top, surface
+  std::string touched = "top";                ///< top, surface (without the support), whole (with it)
   std::string support = "bottom";             ///< bottom, sides, end
   // Tissue
   std::string element = "tet4", law = "linear", solver = "condensed";  ///< words of compositions.hpp
   double youngs_modulus = 5e3, poisson_ratio = 0.4, density = 1000.0;
   // Loads
-  std::string load = "none";   ///< none, gravity, pressure, traction, body, point, swelling
-  double load_size = 0.0;      ///< strain that the load causes, roughly
-  double support_moves = 0.0;  ///< displacement of the support across the body, in edges
+  std::string load = "none";     ///< none, gravity, pressure, traction, body, point, swelling
+  double load_size = 0.0;        ///< strain that the load causes, roughly
+  double support_moves = 0.0;    ///< displacement of the support across the body, in edges
+  double support_travels = 0.0;  ///< of a box on two sides: what one of them goes away and comes back, in lengths of it
   // Contact
   double friction = 0.0;
   double coupling = 1000.0;  ///< stiffness [N/m]
   int capacity = 0;          ///< of contacts; 0: the default
-  bool corrected = false;    ///< ServoOptions::corrected_force
+  bool measured = false;     ///< the error of forces is measured at set-up
+  bool corrected = false;    ///< the same, and ServoOptions::corrected_force
   // How it runs
   int rate = 1000;  ///< ticks per second
   int ticks = 300;
@@ -77,7 +79,9 @@ void visit(Value& s, F&& f) {
   f("element", s.element), f("law", s.law), f("solver", s.solver);
   f("youngs_modulus", s.youngs_modulus), f("poisson_ratio", s.poisson_ratio), f("density", s.density);
   f("load", s.load), f("load_size", s.load_size), f("support_moves", s.support_moves);
-  f("friction", s.friction), f("coupling", s.coupling), f("capacity", s.capacity), f("corrected", s.corrected);
+  f("support_travels", s.support_travels);
+  f("friction", s.friction), f("coupling", s.coupling), f("capacity", s.capacity), f("measured", s.measured),
+      f("corrected", s.corrected);
   f("rate", s.rate), f("ticks", s.ticks), f("threads", s.threads), f("step", s.step), f("inertia", s.inertia);
   f("pose", s.pose), f("member", s.member), f("cuts", s.cuts), f("seed", s.seed);
 }

@@ -6,6 +6,8 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/mesh/scene.hpp>
+#include <palpate/model/setup_report.hpp>
 
 #include <memory>
 #include <string>
@@ -32,6 +34,9 @@ class Tissue {
   virtual std::unique_ptr<palpate::BackgroundWorker> worker() = 0;
   virtual void reset() = 0;
   virtual void set_pose(const Eigen::Isometry3d& pose) = 0;
+  /// Other loads and prescribed displacements, for a tissue that moves.
+  virtual void set_conditions(const palpate::Scene& conditions) = 0;
+  virtual const palpate::SetupReport& report() const = 0;
   /// Orders a cut; false for a tissue that cannot be cut.
   virtual bool cut(const palpate::BladeSweep& sweep) = 0;
   /// Vertices of the contact surface under forces on it, world frame [m]. Requires their columns, as a tick does.

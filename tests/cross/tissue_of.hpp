@@ -68,6 +68,13 @@ class TissueOf final : public Tissue {
     pose_ = pose;
     place();
   }
+  void set_conditions(const palpate::Scene& conditions) override {
+    if constexpr (requires { model_->set_conditions(conditions); }) {
+      model_->set_conditions(conditions);
+      if (second_) second_->set_conditions(conditions);
+    }
+  }
+  const palpate::SetupReport& report() const override { return model_->report(); }
   bool cut(const palpate::BladeSweep& sweep) override {
     if constexpr (requires { model_->cut(sweep); }) {
       model_->cut(sweep);
@@ -137,7 +144,7 @@ palpate::SetupOptions setup_options(const Scene& scene, const TissueOptions& giv
   options.threads = given.threads;
   options.columns = palpate::ColumnFill::synchronous;
   if (takes_cache<Solver>) options.cache_file = given.cache_file;
-  if (scene.corrected) options.force_error = palpate::measured_force_error();
+  if (scene.measured || scene.corrected) options.force_error = palpate::measured_force_error();
   return options;
 }
 
