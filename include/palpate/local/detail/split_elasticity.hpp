@@ -22,6 +22,9 @@ SplitElasticity split_elasticity(const Matrix6& d) noexcept;
 /// of near-incompressibility. One half when the bulk modulus is lost to rounding.
 double equivalent_poisson_ratio(const Matrix6& d) noexcept;
 
+/// The shear modulus of that material [Pa].
+double equivalent_shear_modulus(const Matrix6& d) noexcept;
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -36,8 +36,13 @@ PALPATE_INLINE SplitElasticity split_elasticity(const Matrix6& d) noexcept {
   return split;
 }
 
+PALPATE_INLINE double equivalent_shear_modulus(const Matrix6& d) noexcept {
+  if (const auto c = lame_constants(d)) return c->mu;  // near nu = 0.5 the difference below loses digits
+  return (d.trace() - 3.0 * bulk_modulus(d)) / 7.0;
+}
+
 PALPATE_INLINE double equivalent_poisson_ratio(const Matrix6& d) noexcept {
-  const double bulk = bulk_modulus(d), shear = (d.trace() - 3.0 * bulk) / 7.0;
+  const double bulk = bulk_modulus(d), shear = equivalent_shear_modulus(d);
   return bulk > 0.0 && std::isfinite(bulk) ? (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)) : 0.5;
 }
 

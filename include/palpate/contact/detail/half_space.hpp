@@ -1,0 +1,78 @@
+// The compliance between points of the surface of an elastic half-space.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// A point of a surface, and the half-space that the body is near it.
+struct HalfSpacePoint {
+  Vector3 position = Vector3::Zero();  ///< at rest [m]
+  Vector3 normal = Vector3::Zero();    ///< outward, unit
+  double root = 0.0;                   ///< 1 / sqrt(4 pi mu) [sqrt(m^2/N)], see `root_of`
+  double poisson_ratio = 0.0;          ///< nu
+  double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
+
+  /// For a shear modulus mu [Pa].
+  static double root_of(double mu) noexcept { return 0.5 * std::numbers::inv_sqrtpi / std::sqrt(mu); }
+};
+
+/// The displacement of the surface of a half-space at p per force on it at q [m/N], rows displacement, columns force:
+///   1 / (4 pi mu) (2 (1 - nu) I / r + 2 nu d d^T / r^3 + (1 - 2 nu) (d n^T - n d^T) / r^2)
+/// with d = p - q, r = |d| and n the outward normal (Boussinesq 1885, Cerruti 1882; Johnson, Contact Mechanics, 1985,
+/// 3.2 and 3.6). Exact on a plane with one material. Elsewhere n and nu are means and mu the geometric mean, so that
+/// swapping p and q transposes the result. Finite for nu from 0 to 0.5. p and q must differ. About 40 flops, a root and
+/// two divisions.
+PALPATE_ALWAYS_INLINE Matrix3 half_space_compliance(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  const Vector3 d = p.position - q.position, n = 0.5 * (p.normal + q.normal);
+  const double nu = 0.5 * (p.poisson_ratio + q.poisson_ratio);
+  const double per_length = 1.0 / d.norm(), scale = p.root * q.root * per_length;
+  const double same = scale * 2.0 * (1.0 - nu), along = scale * 2.0 * nu * per_length * per_length;
+  const double across = scale * (1.0 - 2.0 * nu) * per_length;
+  Matrix3 g;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      g.coeffRef(i, j) = (i == j ? same : 0.0) + along * d[i] * d[j] + across * (d[i] * n[j] - n[i] * d[j]);
+  return g;
+}
+
+/// The displacement of a point per force on its part of the surface [m/N]: in the middle of a disc under uniform
+/// traction, normal (1 - nu) / (pi mu rho), tangential (2 - nu) / (2 pi mu rho) (Johnson 1985, 3.4 and 3.7). With
+/// `area` [m^2] that the point stands for, rho = sqrt(area / pi) / 1.06. The factor is fitted: with it a rigid sphere
+/// on a half-space gets the force of Hertz within 0.6 % on average, for 7 to 37 points in contact, and Mindlin's
+/// tangential stiffness within 3 %; without it it is 1 to 2.4 % too stiff.
+inline Matrix3 half_space_self_compliance(const HalfSpacePoint& p, double area) noexcept {
+  constexpr double fitted = 1.06;
+  const double nu = p.poisson_ratio, radius = std::sqrt(area * std::numbers::inv_pi) / fitted;
+  const double scale = 2.0 * p.root * p.root / radius, tangential = scale * (2.0 - nu);
+  const double normal = scale * 2.0 * (1.0 - nu);
+  return tangential * Matrix3::Identity() + (normal - tangential) * (p.normal * p.normal.transpose());
+}
+
+/// How much of half_space_compliance counts between two points. By distance: 1 up to twice the mean length of their
+/// edges, 0 from four times that on, because the mesh itself shows well what points do that are far apart. By
+/// direction: 1 where the normals are less than a right angle apart, 0 from 120 degrees on, so that the two sides of a
+/// slit or of a thin fold have nothing of each other. Twice continuously differentiable, symmetric.
+PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  const auto step = [](double t) noexcept {  // from 1 at t = 0 to 0 at t = 1
+    const double rest = 1.0 - t;
+    return t <= 0.0 ? 1.0 : !(t < 1.0) ? 0.0 : rest * rest * rest * (1.0 + t * (3.0 + 6.0 * t));
+  };
+  const double near = step((p.position - q.position).norm() / (p.length + q.length) - 1.0);
+  return near > 0.0 ? near * step(-2.0 * p.normal.dot(q.normal)) : 0.0;
+}
+
+/// Both together: what is added to the compliance of the mesh between two points. Zero for points at the same place.
+inline Matrix3 supported_compliance(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  constexpr double same_place = 1e-9;
+  const double support = half_space_support(p, q);
+  if (!(support > 0.0) || !((p.position - q.position).norm() > same_place * (p.length + q.length)))
+    return Matrix3::Zero();
+  return support * half_space_compliance(p, q);
+}
+
+}}  // namespace palpate

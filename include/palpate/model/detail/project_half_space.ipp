@@ -1,0 +1,174 @@
+// Definitions of project_half_space.hpp.
+#pragma once
+
+#include <palpate/core/detail/thread_ranges.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/model/detail/patch_projection.hpp>
+#include <palpate/model/detail/project_half_space.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
+
+/// Projects all vertices of a source and collects the results.
+class HalfSpaceTable {
+ public:
+  HalfSpaceTable(const HalfSpaceSource& source, const SetupLimits& limits)
+      : source_(source), limits_(limits), entries_(source.touched.size()) {
+    place_vertices();
+  }
+
+  ProjectedHalfSpace make() {
+    project();
+    ProjectedHalfSpace::Blocks blocks = collect();
+    return {std::move(points_), std::move(marks_), std::move(blocks)};
+  }
+
+ private:
+  void place_vertices();
+  void project();
+  void project_vertex(PatchProjection& worker, int v);
+  Index longest_axis() const;
+  std::vector<std::vector<int>> neighbours() const;
+  Matrix3 value(int i, int j) const;
+  Matrix3 one_way(int i, int j) const;
+  ProjectedHalfSpace::Blocks collect() const;
+
+  const HalfSpaceSource& source_;
+  const SetupLimits& limits_;
+  std::vector<HalfSpacePoint> points_;
+  std::vector<HalfSpaceMarks> marks_;
+  std::vector<std::vector<PatchEntry>> entries_;  // per middle of a patch
+};
+
+PALPATE_INLINE void HalfSpaceTable::place_vertices() {
+  for (std::size_t v = 0; v < source_.touched.size(); ++v) {
+    const NodeId node = source_.touched[v];
+    const VertexMaterial& material = source_.materials[v];
+    HalfSpacePoint& point = points_.emplace_back();
+    point.position = source_.position(node);
+    point.normal = source_.boundary.normal(node);
+    point.length = source_.boundary.length(node);
+    point.poisson_ratio = material.poisson_ratio;
+    HalfSpaceMarks& marks = marks_.emplace_back(material.marks);
+    if (point.normal.isZero()) {
+      marks.set(HalfSpaceMark::no_surface);
+      continue;
+    }
+    point.root = HalfSpacePoint::root_of(material.shear_modulus);
+    if (source_.boundary.is_sharp(node)) marks.set(HalfSpaceMark::sharp_edge);
+  }
+}
+
+PALPATE_INLINE void HalfSpaceTable::project_vertex(PatchProjection& worker, int v) {
+  const auto i = static_cast<std::size_t>(v);
+  if (points_[i].root == 0.0) return;
+  worker.solve(v, points_[i].normal, entries_[i], marks_[i]);
+  if (marks_[i].has(HalfSpaceMark::singular)) points_[i].root = 0.0;
+}
+
+PALPATE_INLINE void HalfSpaceTable::project() {
+  const auto count = static_cast<Index>(points_.size());
+  const int threads = limits_.threads.threads();
+  const ColumnBlocks columns(source_.stiffness[0].matrix->pattern());
+  std::vector<std::unique_ptr<PatchProjection>> workers(static_cast<std::size_t>(threads));
+  const Index turn = Index{256} * threads;
+  for (Index first = 0; first < count; first += turn) {
+    limits_.advance("compliance", static_cast<double>(first) / static_cast<double>(count));
+    thread_ranges(std::min(turn, count - first), 1, limits_.threads, [&](int thread, Index begin, Index end) {
+      auto& worker = workers[static_cast<std::size_t>(thread)];
+      if (!worker) worker = std::make_unique<PatchProjection>(source_, columns);
+      for (Index v = first + begin; v < first + end; ++v) project_vertex(*worker, static_cast<int>(v));
+    });
+  }
+}
+
+PALPATE_INLINE Index HalfSpaceTable::longest_axis() const {
+  Vector3 low = Vector3::Constant(infinity), high = -low;
+  for (const HalfSpacePoint& p : points_) {
+    low = low.cwiseMin(p.position);
+    high = high.cwiseMax(p.position);
+  }
+  Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  return axis;
+}
+
+/// Of every vertex those of lower number within the support, and itself, ascending.
+PALPATE_INLINE std::vector<std::vector<int>> HalfSpaceTable::neighbours() const {
+  std::vector<std::vector<int>> near(points_.size());
+  const Index axis = longest_axis();
+  std::vector<int> order;  // along that axis, without vertices that are left as they are
+  double longest = 0.0;
+  for (std::size_t v = 0; v < points_.size(); ++v)
+    if (points_[v].root > 0.0) {
+      order.push_back(static_cast<int>(v));
+      longest = std::max(longest, points_[v].length);
+    }
+  const auto point = [&](int v) -> const HalfSpacePoint& { return points_[static_cast<std::size_t>(v)]; };
+  std::ranges::sort(order, {}, [&](int v) { return std::pair(point(v).position[axis], v); });
+  for (auto first = order.begin(); first != order.end(); ++first) {
+    near[static_cast<std::size_t>(*first)].push_back(*first);
+    const double end = point(*first).position[axis] + 2.0 * (point(*first).length + longest);
+    for (auto other = first + 1; other != order.end() && point(*other).position[axis] < end; ++other)
+      if (half_space_support(point(*first), point(*other)) > 0.0)
+        near[static_cast<std::size_t>(std::max(*first, *other))].push_back(std::min(*first, *other));
+  }
+  for (auto& list : near) std::ranges::sort(list);
+  return near;
+}
+
+/// Displacement of i per force on j: of the patch around j, or of the half-space itself beyond it.
+PALPATE_INLINE Matrix3 HalfSpaceTable::one_way(int i, int j) const {
+  const HalfSpacePoint &to = points_[static_cast<std::size_t>(i)], &from = points_[static_cast<std::size_t>(j)];
+  const auto& entries = entries_[static_cast<std::size_t>(j)];
+  const auto found = std::ranges::lower_bound(entries, i, {}, &PatchEntry::vertex);
+  if (found == entries.end() || found->vertex != i) return half_space_compliance(to, from);
+  return 4.0 * std::numbers::pi * to.root * from.root * found->compliance;
+}
+
+PALPATE_INLINE Matrix3 HalfSpaceTable::value(int i, int j) const {
+  const Matrix3 mean = 0.5 * (one_way(i, j) + Matrix3(one_way(j, i).transpose()));
+  return half_space_support(points_[static_cast<std::size_t>(i)], points_[static_cast<std::size_t>(j)]) * mean;
+}
+
+PALPATE_INLINE ProjectedHalfSpace::Blocks HalfSpaceTable::collect() const {
+  const auto near = neighbours();
+  ProjectedHalfSpace::Blocks blocks;
+  blocks.row_start.push_back(0);
+  for (const auto& row : near) {
+    blocks.column.insert(blocks.column.end(), row.begin(), row.end());
+    blocks.row_start.push_back(static_cast<Index>(blocks.column.size()));
+  }
+  limits_.require_memory(static_cast<double>(blocks.column.size()) * sizeof(Matrix3), "the projected half-space");
+  blocks.value.reserve(blocks.column.size());
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (const int j : near[i]) blocks.value.push_back(value(static_cast<int>(i), j));
+  return blocks;
+}
+
+inline void require_sizes(const HalfSpaceSource& source) {
+  const auto nodes = static_cast<std::size_t>(source.mesh.node_count);
+  const bool fits = source.materials.size() == source.touched.size() && source.constrained.size() == nodes &&
+                    !source.stiffness.empty() && source.layers > 0 && std::ranges::is_sorted(source.touched) &&
+                    std::ranges::all_of(source.stiffness, [&](const auto& k) {
+                      return k.matrix != nullptr && k.matrix->size() == 3 * source.mesh.node_count;
+                    });
+  if (!fits)
+    raise(SetupErrorKind::bad_argument, "the lists for the projection of a half-space do not have the size of the mesh",
+          "Give a material per touched vertex, a mark per node, and the stiffness of all nodes");
+}
+
+}  // namespace detail
+
+PALPATE_INLINE ProjectedHalfSpace project_half_space(const HalfSpaceSource& source, const SetupLimits& limits) {
+  detail::require_sizes(source);
+  return detail::HalfSpaceTable(source, limits).make();
+}
+
+}}  // namespace palpate
