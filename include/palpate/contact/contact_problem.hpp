@@ -90,10 +90,10 @@ class ContactProblem {
   };
   /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
   static constexpr int vertices_per_contact = 12;
-  static constexpr int maximum_rounds = 12;   // solutions of the contact problem per tick
-  static constexpr int added_per_round = 16;  // rows, those of deepest penetration
-  static constexpr double unsettled = 0.05;   // relative change of force that is left and is flagged
-  static constexpr double growing = 0.005;    // the same where a change is larger than the one before
+  static constexpr int maximum_rounds = 12;              // solutions of the contact problem per tick
+  static constexpr int added_per_round = 16;             // rows, those of deepest penetration
+  static constexpr double unsettled = 0.05;              // relative change of force that is left and is flagged
+  static constexpr double growing = 0.005;               // the same where a change is larger than the one before
   static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
   static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation

@@ -127,16 +127,16 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   return status;
 }
 
-/// A tool that is gone, or restarts elsewhere, has no force any more. Where the linearisations go a part of their step
-/// the tissue keeps a part of it.
+/// Adds up the forces that are still on the tissue although their tools are gone or restart elsewhere. While a
+/// linearisation takes only a part of its step, a part of these forces stays.
 PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept {
   for (const Contact& c : rows_.contacts())
     if (tools[at(c.tool)].force.squaredNorm() == 0.0) of_lifted_ += c.total().norm();
 }
 
-/// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get smaller
-/// by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not stable:
-/// rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
+/// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
+/// smaller by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not
+/// stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
 PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
   if (rest == infinity || (change >= before && change > growing)) return infinity;
   return change < before ? std::max(change, change * change / (before - change)) : change;
@@ -227,7 +227,7 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
   return own;
 }
 
-/// Of a contact point, from the distances of the vertices around it [m].
+/// Distance of a contact point from the nearest constrained node, interpolated from its vertices [m].
 inline double ContactProblem::distance_from_support(const LinearModelError& model, const Contact& c) noexcept {
   double distance = 0.0;
   for (std::size_t a = 0; a < 3; ++a) distance += c.weights[a] * model.supports[at(c.vertices[a])];
