@@ -567,7 +567,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
   arrived_ = proxies_.arrived();
-  of_lifted_ *= 1.0 - part;
+  of_lifted_ = part < 1.0 ? (1.0 - part) * of_lifted_ : 0.0;
   if (part == 1.0)
     rows_.place_points();
   else
