@@ -5,6 +5,7 @@
 #include <palpate/testing/random.hpp>
 
 #include <cmath>
+#include <limits>
 
 #include "catch.hpp"
 
@@ -155,4 +156,34 @@ TEST_CASE("of the length of an edge that passes the rim of an open surface, the 
   CHECK_THAT(length_in_tissue(top, {0.005, 1e-3, -2e-3}, {0.015, 1e-3, -2e-3}), WithinAbs(0.005, 1e-5));
   CHECK_THAT(length_in_tissue(top, {0.0, 1e-3, -3e-3}, {0.0, 1e-3, 3e-3}), WithinAbs(3e-3, 1e-5));
   CHECK(length_in_tissue(top, {0.0, -1e-3, 1e-6}, {0.0, 1e-3, 1e-6}) == 0.0);
+}
+
+TEST_CASE("the length in tissue is right for edges that are much longer than the body", "[contact][blade][extreme]") {
+  testing::Random random(11);
+  const ContactSurface surface = cut_block(0.0, {});
+  const Vector3 half(0.5 * size, 0.5 * size, 0.5 * height), middle(0.0, 0.0, 0.5 * height);
+  int wrong = 0;
+  for (int k = 0; k < 2000; ++k) {
+    // Through a vertex of the upper side: at the border of a group of triangles.
+    const Vector3 through(0.25 * size * static_cast<int>(random.uniform(-1.99, 1.99)),
+                          0.25 * size * static_cast<int>(random.uniform(-1.99, 1.99)), height);
+    const Vector3 ahead = std::pow(10.0, random.uniform(0.0, 9.0)) * random.vector<3>(-1.0, 1.0);
+    const Vector3 a = through - ahead, b = through + random.uniform(0.5, 1.5) * ahead;
+    const double rounding = 1e-8 + 1e-14 * ahead.norm();
+    const double expected = length_in_box(middle - half, middle + half, a, b);
+    // At a grazing angle rounding moves the ends further.
+    const double steepest = ahead.cwiseAbs().minCoeff() / ahead.norm();
+    wrong += std::abs(length_in_tissue(surface, a, b) - expected) > rounding / std::max(steepest, 1e-6);
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("an edge with an end that is not finite has no length in tissue", "[contact][blade][extreme]") {
+  const ContactSurface closed = cut_block(0.0, {});
+  const ContactSurface open({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  for (const double value : {infinity, -infinity, std::numeric_limits<double>::quiet_NaN()})
+    for (const ContactSurface* surface : {&closed, &open}) {
+      CHECK(length_in_tissue(*surface, {0.0, 0.0, value}, {0.0, 0.0, -1.0}) == 0.0);
+      CHECK(length_in_tissue(*surface, {0.0, 0.0, -1.0}, {value, 0.0, 0.0}) == 0.0);
+    }
 }

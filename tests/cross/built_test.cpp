@@ -49,7 +49,7 @@ std::vector<cross::Change> all_changes() {
   changes[2].linear = Vector3(-1.0, 1.0, 1.0).asDiagonal() * some_rotation();
   changes[3].renumbered = true;
   changes[4].scale = 100.0;
-  changes[5] = {changes[2].linear, Vector3(0.3, -2.0, 1.0), 0.1, true, true, 0.0};
+  changes[5] = {changes[2].linear, Vector3(0.3, -2.0, 1.0), 0.1, true, true, false, 0.0};
   return changes;
 }
 

@@ -112,6 +112,9 @@ TEST_CASE("the laws of physics see a force that is wrong, unless it is flagged",
   CHECK_FALSE(check(law.c_str(), scene, wrong).front().flagged);
   if (law == "finite" || law == "action and reaction") return;  // no flag excuses these
   for (auto& tick : wrong.ticks) tick[0].status.set(StatusFlag::coarse_contact);
+  const bool of_direction = law == "no pull" || law == "work of a closed path" || law == "settles";
+  CHECK(check(law.c_str(), scene, wrong).front().flagged == !of_direction);  // facets of a usual length
+  for (auto& tick : wrong.ticks) tick[0].status.set(StatusFlag::large_displacement);
   CHECK(check(law.c_str(), scene, wrong).front().flagged);
 }
 

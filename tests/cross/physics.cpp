@@ -160,6 +160,7 @@ std::vector<Finding> check_work(const Scene& s, const Run& r) {
 
 /// A tool that stays at its place has a force that does not swing.
 std::vector<Finding> check_settled(const Scene& s, const Run& r) {
+  if (r.ticks.empty()) return {};
   const int from = (2 * first_hold(s) + 3 * last_hold(s)) / 5, to = last_hold(s);
   for (std::size_t t = 0; t < s.tools.size(); ++t) {
     // What it falls and rises again, or rises and falls again; a force that only creeps has none of one of the two.

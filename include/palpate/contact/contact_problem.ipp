@@ -160,8 +160,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   return status;
 }
 
-/// A tool that is gone, or restarts elsewhere, has no force any more. Where the linearisations go a part of their step
-/// the tissue keeps a part of it.
+/// Adds up the forces that are still on the tissue although their tools are gone or restart elsewhere. While a
+/// linearisation takes only a part of its step, a part of these forces stays.
 PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept {
   for (const Contact& c : rows_.contacts())
     if (tools[at(c.tool)].force.squaredNorm() == 0.0) of_lifted_ += c.total().norm();
@@ -259,7 +259,7 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
   return own;
 }
 
-/// Of a contact point, from the distances of the vertices around it [m].
+/// Distance of a contact point from the nearest constrained node, interpolated from its vertices [m].
 inline double ContactProblem::distance_from_support(const LinearModelError& model, const Contact& c) noexcept {
   double distance = 0.0;
   for (std::size_t a = 0; a < 3; ++a) distance += c.weights[a] * model.supports[at(c.vertices[a])];
@@ -619,7 +619,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
 PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
   arrived_ = proxies_.arrived();
-  of_lifted_ *= 1.0 - part;
+  of_lifted_ = part < 1.0 ? (1.0 - part) * of_lifted_ : 0.0;
   if (part == 1.0)
     rows_.place_points();
   else

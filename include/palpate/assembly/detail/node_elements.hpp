@@ -1,12 +1,10 @@
 // Elements around each node.
 #pragma once
 
-#include <palpate/core/config.hpp>
-#include <palpate/core/types.hpp>
+#include <palpate/assembly/detail/node_lists.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
 #include <span>
-#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -18,11 +16,10 @@ class NodeElements {
   template <Element E>
   explicit NodeElements(const Mesh<E>& mesh) : NodeElements(mesh_ref(mesh)) {}
 
-  std::span<const NodeId> of(Index node) const noexcept;
+  std::span<const NodeId> of(Index node) const noexcept { return lists_.of(node); }
 
  private:
-  std::vector<Index> first_;
-  std::vector<NodeId> element_;
+  NodeLists lists_;
 };
 
 }}  // namespace palpate

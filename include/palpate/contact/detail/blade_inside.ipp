@@ -108,10 +108,11 @@ inline double length_inside(const ContactSurface& surface, const Vector3& a, con
   const Box& box = surface.bvh().bounds();
   const double size = box.size().norm(), back = std::max(0.0, ahead.dot(a - 0.5 * (box.low + box.high)) + size);
   const double beside = 1e-9 * size;
+  const double margin = 2.0 * beside + 1e-15 * (a.norm() + b.norm() + size);  // rounding of a far or long edge
   // The three are a third of a turn apart, at an angle from the axes: none of them is in the plane of a slit that is.
   constexpr std::array<std::array<double, 2>, 3> offset{{{0.9888, 0.1494}, {-0.6238, 0.7816}, {-0.3650, -0.9310}}};
   std::array<EdgeCrossings, 3> lines{EdgeCrossings(length), EdgeCrossings(length), EdgeCrossings(length)};
-  surface.bvh().visit_along(a - back * ahead, b - a + back * ahead, 2.0 * beside, [&](int t) {
+  surface.bvh().visit_along(a - back * ahead, b - a + back * ahead, margin, [&](int t) {
     const Triangle& v = surface.triangle(t);
     std::array<const Vector3*, 3> corner{&surface.position(v[0]), &surface.position(v[1]), &surface.position(v[2])};
     const int sense = sort_corners(corner);
@@ -192,6 +193,7 @@ inline double length_behind(const ContactSurface& surface, const Vector3& a, con
 
 PALPATE_INLINE double length_in_tissue(const ContactSurface& surface, const Vector3& a, const Vector3& b,
                                        double reach) noexcept {
+  if (!((b - a).squaredNorm() < infinity)) return 0.0;  // also if an end is not a number
   return surface.is_closed() ? detail::length_inside(surface.boundary(), a, b)
                              : detail::length_behind(surface, a, b, reach);
 }

@@ -15,9 +15,9 @@ struct BladeSweep {
   /// [m^2]
   double area() const noexcept;
   Box box() const noexcept;
-  /// Whether the segment from p to q crosses it. A point on the surface, up to a distance of 1e-9 of that from a corner,
-  /// counts as on its front side, and a segment through its boundary as a crossing: points on the two sides of a closed
-  /// surface are never left connected.
+  /// Whether the segment from p to q crosses it. A point on the surface, up to a distance of 1e-9 of that from a
+  /// corner, counts as on its front side, and a segment through its boundary as a crossing: points on the two sides of
+  /// a closed surface are never left connected.
   bool crosses(const Vector3& p, const Vector3& q) const noexcept;
 
  private:

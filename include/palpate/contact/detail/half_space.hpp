@@ -69,7 +69,8 @@ PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const H
   return near > 0.0 ? near * step(-2.0 * p.normal.dot(q.normal)) : 0.0;
 }
 
-/// Both together: what is added to the compliance of the mesh between two points. Zero for points at the same place.
+/// half_space_compliance times half_space_support: what is added to the compliance of the mesh between two points
+/// [m/N]. Zero for points at the same place.
 inline Matrix3 supported_compliance(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
   constexpr double same_place = 1e-9;
   const double support = half_space_support(p, q);

@@ -1,49 +1,14 @@
 // The boundary of a mesh as seen from its nodes.
 #pragma once
 
-#include <palpate/core/config.hpp>
-#include <palpate/core/types.hpp>
+#include <palpate/assembly/detail/node_lists.hpp>
 #include <palpate/mesh/surface.hpp>
 
 #include <array>
-#include <numeric>
 #include <span>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-
-/// Lists of numbers, one per node: what is at it.
-struct NodeLists {
-  std::vector<Index> first;
-  std::vector<int> item;
-
-  std::span<const int> of(NodeId node) const noexcept {
-    const auto i = static_cast<std::size_t>(node);
-    return {item.data() + first[i], static_cast<std::size_t>(first[i + 1] - first[i])};
-  }
-};
-
-namespace detail {
-
-/// Lists for every node the numbers of the items that contain it.
-template <class Items>
-NodeLists lists_of(const Items& items, Index nodes) {
-  NodeLists lists;
-  lists.first.assign(static_cast<std::size_t>(nodes) + 1, 0);
-  for (const auto& item : items)
-    for (const NodeId n : item) ++lists.first[static_cast<std::size_t>(n) + 1];
-  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
-  lists.item.resize(static_cast<std::size_t>(lists.first.back()));
-  std::vector<Index> next(lists.first.begin(), lists.first.end() - 1);
-  int number = 0;
-  for (const auto& item : items) {
-    for (const NodeId n : item) lists.item[static_cast<std::size_t>(next[static_cast<std::size_t>(n)]++)] = number;
-    ++number;
-  }
-  return lists;
-}
-
-}  // namespace detail
 
 /// Faces, triangles, normal and scale of the boundary at every node. Nodes inside the body have none. O(faces),
 /// allocates.
@@ -59,8 +24,8 @@ class BoundaryNodes {
   const std::array<NodeId, 3>& triangle(int t) const noexcept { return triangles_[static_cast<std::size_t>(t)]; }
   /// Outward unit normal of a triangle.
   const Vector3& triangle_normal(int t) const noexcept { return triangle_normals_[static_cast<std::size_t>(t)]; }
-  std::span<const int> faces_at(NodeId node) const noexcept { return faces_at_.of(node); }
-  std::span<const int> triangles_at(NodeId node) const noexcept { return triangles_at_.of(node); }
+  std::span<const NodeId> faces_at(NodeId node) const noexcept { return faces_at_.of(node); }
+  std::span<const NodeId> triangles_at(NodeId node) const noexcept { return triangles_at_.of(node); }
   bool is_on_boundary(NodeId node) const noexcept { return !triangles_at_.of(node).empty(); }
   /// Outward unit normal, the mean of the triangles with their angles at the node as weights; zero where they cancel.
   Vector3 normal(NodeId node) const noexcept;

@@ -10,11 +10,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE BoundaryNodes::BoundaryNodes(const MeshRef& mesh, const std::vector<BoundaryFace>& faces)
     : positions_(mesh.positions), faces_(&faces), sharp_(static_cast<std::size_t>(mesh.node_count), false) {
-  std::vector<decltype(BoundaryFace{}.nodes)> nodes;
-  for (const BoundaryFace& face : faces) nodes.push_back(face.nodes);
-  faces_at_ = detail::lists_of(nodes, mesh.node_count);
+  faces_at_ = NodeLists(
+      static_cast<Index>(faces.size()),
+      mesh.node_count, [&](Index f) -> const auto& { return faces[static_cast<std::size_t>(f)].nodes; });
   list_triangles(mesh);
-  triangles_at_ = detail::lists_of(triangles_, mesh.node_count);
+  triangles_at_ = NodeLists(
+      static_cast<Index>(triangles_.size()),
+      mesh.node_count, [&](Index t) -> const auto& { return triangles_[static_cast<std::size_t>(t)]; });
   find_sharp_edges();
 }
 

@@ -27,19 +27,20 @@ VolumeDomains volume_domains([[maybe_unused]] const Body<E>& body, [[maybe_unuse
                              [[maybe_unused]] const SetupLimits& limits) {
   VolumeDomains result;
   if constexpr (HasSmoothedStrain<E>) {
-    std::vector<std::array<NodeId, 1>> middles;
+    std::vector<NodeId> middle;
     const StrainDomains<E> domains(body.mesh, around, limits);
     result.first.push_back(0);
     for (Index d = 0; d < domains.size(); ++d) {
       const StrainDomain domain = domains[d];
       if (domain.part != StrainPart::volumetric) continue;
-      middles.push_back({domain.ends[1]});
+      middle.push_back(domain.ends[1]);
       result.volume.push_back(domain.volume);
       result.node.insert(result.node.end(), domain.nodes.begin(), domain.nodes.end());
       result.gradient.insert(result.gradient.end(), domain.gradients.begin(), domain.gradients.end());
       result.first.push_back(static_cast<Index>(result.node.size()));
     }
-    result.of_node = detail::lists_of(middles, body.mesh.node_count());
+    result.of_node = NodeLists(static_cast<Index>(middle.size()), body.mesh.node_count(),
+                               [&](Index d) { return std::span(&middle[static_cast<std::size_t>(d)], 1); });
   }
   return result;
 }

@@ -99,7 +99,7 @@ PALPATE_INLINE Index HalfSpaceTable::longest_axis() const {
   return axis;
 }
 
-/// Of every vertex those of lower number within the support, and itself, ascending.
+/// For every vertex, itself and the vertices of lower number within its support, in ascending order.
 PALPATE_INLINE std::vector<std::vector<int>> HalfSpaceTable::neighbours() const {
   std::vector<std::vector<int>> near(points_.size());
   const Index axis = longest_axis();
@@ -123,7 +123,7 @@ PALPATE_INLINE std::vector<std::vector<int>> HalfSpaceTable::neighbours() const 
   return near;
 }
 
-/// Displacement of i per force on j: of the patch around j, or of the half-space itself beyond it.
+/// Displacement of vertex i per force on vertex j: that of the patch around j, or of the half-space beyond the patch.
 PALPATE_INLINE Matrix3 HalfSpaceTable::one_way(int i, int j) const {
   const HalfSpacePoint &to = points_[static_cast<std::size_t>(i)], &from = points_[static_cast<std::size_t>(j)];
   const auto& entries = entries_[static_cast<std::size_t>(j)];

@@ -36,7 +36,7 @@ struct EquivalentMaterial {
   static constexpr double same = 1e-6;
 };
 
-/// Of every matrix; adds to `ratios` the Poisson ratios of those that are used, each once.
+/// The equivalent material of every elasticity matrix. Adds each Poisson ratio of the matrices in use to `ratios` once.
 inline std::vector<EquivalentMaterial> equivalent_materials(std::span<const Matrix6> elasticities,
                                                             const std::vector<bool>& used,
                                                             std::vector<double>& ratios) {

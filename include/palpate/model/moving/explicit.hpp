@@ -185,7 +185,9 @@ struct SolverTraits<Explicit<Scheme>> {
   static PreparedMotion make_motion(const Body<E>& rest, MaterialBody body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
     PreparedMotion made;
-    made.accepts_initial_strains = requires { body.mesh; };
+    made.accepts_initial_strains = requires {
+      body.mesh;
+    };
     made.start = VectorX::Zero(3 * rest.mesh.node_count());
     if (p.settle) {
       Equilibrium statics(make_constrained_body(body, scene, limits), limits);
