@@ -280,7 +280,7 @@ TEST_CASE("more contacts than the capacity: flagged, all rows below the sphere, 
   CHECK(s.status == Status(StatusFlag::degraded_model));  // solved for the contacts that fit
   for (const Contact& c : s.problem.contacts())
     CHECK(c.rest.head<2>().norm() < std::sqrt(2e-3 * radius));  // below the sphere, not beside it
-  CHECK(s.problem.contacts().size() >= 6);
+  CHECK(s.problem.contacts().size() >= 4);
   CHECK(s.force().allFinite());
   CHECK(s.force()[2] > 0.0);
   CHECK(s.force().norm() <= 500.0 * 1e-3 * (1.0 + 1e-6));

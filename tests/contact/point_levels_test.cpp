@@ -14,18 +14,18 @@ namespace {
 
 using Counts = std::array<int, maximum_tools>;
 using Areas = std::array<double, maximum_tools>;
-constexpr double radius = 4e-3;
+constexpr double tip_radius = 4e-3;
 
 ContactSamples plane_of_samples() {
   test::Pad pad = test::make_pad("z1", 1e4, {16, 16, 2});
-  return {pad.contact_surface(), PointLevels::finest_spacing * radius, PointLevels::coarsest_spacing * radius};
+  return {pad.contact_surface(), PointLevels::finest_spacing * tip_radius, PointLevels::coarsest_spacing * tip_radius};
 }
 
 /// A tick in which tools press parts of a plane with these areas, in so far as they have rows.
 Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity) {
   Areas radii{};
   for (std::size_t t = 0; t < maximum_tools; ++t)
-    if (areas[t] > 0.0) radii[t] = radius;
+    if (areas[t] > 0.0) radii[t] = tip_radius;
   levels.begin_tick(samples, radii, capacity, true, 24);
   Counts used{};
   Areas pressed{};
@@ -47,11 +47,12 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
 
 TEST_CASE("a press has about the wanted number of points at any size of its area", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
+  const double finest = samples.level_with(PointLevels::finest_spacing * tip_radius);
   PointLevels levels;
   for (double area = 1e-6; area < 3e-5; area *= 1.05) {
     Counts used{};
     for (int i = 0; i < 200; ++i) used = tick(levels, samples, {area}, 64);
-    if (levels.level(0) == 0.0) continue;  // first touch: fewer
+    if (levels.level(0) <= finest) continue;  // first touch: fewer
     CHECK(used[0] >= 20);
     CHECK(used[0] <= 50);
     CHECK(levels.deepest() == 0.0);
@@ -66,7 +67,7 @@ TEST_CASE("levels change in small steps", "[contact][levels]") {
   double before = 0.0;
   for (int i = 0; i < 400; ++i) {
     tick(levels, samples, {i < 200 ? 2e-5 : 4e-6}, 400);
-    CHECK(std::abs(levels.level(0) - before) <= 0.1 + 1e-12);
+    if (i > 0) CHECK(std::abs(levels.level(0) - before) <= 0.1 + 1e-12);
     before = levels.level(0);
   }
 }
@@ -74,7 +75,7 @@ TEST_CASE("levels change in small steps", "[contact][levels]") {
 TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
   PointLevels levels;
-  levels.begin_tick(samples, {radius}, 64, true, 24);
+  levels.begin_tick(samples, {tip_radius}, 64, true, 24);
   levels.start(samples, 0, 3e-5);
   const double level = levels.level(0);
   CHECK(level > 1.0);

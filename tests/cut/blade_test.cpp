@@ -117,7 +117,7 @@ TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
   HapticSession session(std::tie(finger, scalpel), tissue, {SphereTool{}, long_blade});
   const LoopReport report = session.run({.duration = 0.4, .paced = false});
   while (tissue.process_cuts()) {}
-  CHECK(report.devices[0].peak_force > 0.05);
+  CHECK(report.devices[0].peak_force > 0.03);
   CHECK(report.devices[1].peak_force > 0.5);
   CHECK(session.servo().blade(0) == nullptr);
   CHECK(session.servo().blade(1)->area() > 0.0);

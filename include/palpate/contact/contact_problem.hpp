@@ -94,7 +94,6 @@ class ContactProblem {
   static constexpr int added_per_round = 16;             // rows, those of deepest penetration
   static constexpr double unsettled = 0.05;              // relative change of force that is left and is flagged
   static constexpr double growing = 0.005;               // the same where a change is larger than the one before
-  static constexpr double unsettled_alternation = 0.01;  // the same for normal forces between turns with friction
   static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation
   static constexpr int most_corrections = 3;             // steps with the same compliance in a linearisation
@@ -114,7 +113,8 @@ class ContactProblem {
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
-  void share_rows(Tools tools) noexcept;
+  inline std::array<double, maximum_tools> radii_near(Tools tools) const noexcept;
+  void share_rows(const std::array<double, maximum_tools>& radius) noexcept;
   /// The contacts of a tool on one body; their vertices are numbered in that body.
   struct BodyContacts {
     std::span<const Contact> rows;
@@ -124,6 +124,7 @@ class ContactProblem {
   };
   BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
+  double error_of_points(std::size_t t) const noexcept;
   bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
                              bool measured) const noexcept;
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;

@@ -55,11 +55,16 @@ PALPATE_INLINE ContactSamples ContactProblem::made_samples(const ContactSurface&
   return {surface, finest, std::max(finest, PointLevels::coarsest_of_mesh * radii.largest)};
 }
 
-/// Divides the rows among the tools that have contact points near them.
-PALPATE_INLINE void ContactProblem::share_rows(Tools tools) noexcept {
+/// Radii of the tools that have contact points near them, 0 for the others.
+inline std::array<double, maximum_tools> ContactProblem::radii_near(Tools tools) const noexcept {
   std::array<double, maximum_tools> radius{};
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active && candidates_.has_any(static_cast<int>(t))) radius[t] = tools[t].radius;
+  return radius;
+}
+
+/// Divides the rows among these tools.
+PALPATE_INLINE void ContactProblem::share_rows(const std::array<double, maximum_tools>& radius) noexcept {
   levels_.begin_tick(candidates_.samples(), radius, rows_.capacity(), candidates_.subfacet() != nullptr,
                      parameters_.pressing_points);
 }
@@ -123,10 +128,12 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
   candidates_.begin_tick(tissue.contact_surface(), tools);
-  share_rows(tools);
-  for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.first(static_cast<int>(t)));
+  const auto near = radii_near(tools);
+  share_rows(near);
+  for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
+  if (const auto now = radii_near(tools); now != near) share_rows(now);
   double change = 0.0, before = 0.0, rest = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
     if (rounds_left_ <= 0) {
@@ -153,7 +160,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.stick(tools);
   levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area());
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (rest > unsettled || rows_.alternation_change() > unsettled_alternation ||
+  if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * rows_.largest_force_scale(tools))
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, rest <= unsettled);
@@ -312,6 +319,17 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   return on_coarse > most * all;
 }
 
+/// What a contact of so few points may be in error, relative to the force: measured with spheres on a half-space. Points
+/// without half-space have no area, and stand for themselves.
+PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexcept {
+  constexpr double of_one = 0.25;
+  int points = 0;
+  for (int i = 0; i < rows_.count(); ++i)
+    if (const Candidate& c = rows_.candidate(i); c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0)
+      points += rows_.has_area(i);
+  return points > 0 ? of_one / points : 0.0;
+}
+
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
 /// large, theirs is: its force there is that on a half-space. Relative to the force; infinite if not known.
 PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const KnownErrors& body,
@@ -390,7 +408,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   coarse_[t] = coarse_[t] || presses_coarse_facets(surface, t, tool, measured);
   if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
-  error.parts.merged = scale_of_force(t, force) * missing_depth() / (1.0 - missing_depth());
+  error.parts.merged = scale_of_force(t, force) * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));
   error.bound = error.parts.sum();
   return error;
 }
@@ -579,7 +597,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!(gap < -allowed)) continue;
     if (is_finer)
-      levels_.note_skipped(-gap);
+      levels_.note_skipped(c.tool, -gap);
     else
       violated_[at(violated_count_++)] = {gap, &c};
   }

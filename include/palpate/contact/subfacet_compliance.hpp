@@ -39,8 +39,14 @@ class SubfacetCompliance {
     int vertices;
   };
   explicit SubfacetCompliance(std::span<const Body> bodies);
-  /// The same for a surface with more vertices, where only these are known, and none of the new ones.
-  SubfacetCompliance(const SubfacetCompliance& whole, const std::vector<bool>& known);
+  /// A vertex of a surface after cuts.
+  struct Copy {
+    int origin;       ///< vertex of the surface before; -1: not known
+    bool is_changed;  ///< elements around it were removed or parted
+  };
+  /// The same for the surface of a body that was cut: every vertex has what its origin has. Cuts make a body softer, so
+  /// that the compliance of its points remains positive definite. Two copies of a vertex have the same place.
+  SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices);
 
   int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
   const HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }
@@ -56,6 +62,8 @@ class SubfacetCompliance {
   HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
   /// chi G of two different points; zero where one is not known [m/N].
   static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;
+  /// Whether different vertices may be at the same place.
+  bool has_copies() const noexcept { return has_copies_; }
   /// N_p^T chi G_h N_q [m/N]. Checks the blocks of up to three vertices.
   Matrix3 shown(const ContactSample& p, const ContactSample& q) const noexcept;
 
@@ -65,6 +73,7 @@ class SubfacetCompliance {
   std::vector<HalfSpacePoint> vertices_;
   std::vector<int> first_;
   std::vector<Block> blocks_;
+  bool has_copies_ = false;
 };
 
 }}  // namespace palpate

@@ -3,6 +3,8 @@
 
 #include <palpate/contact/subfacet_compliance.hpp>
 
+#include <algorithm>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const ProjectedHalfSpace& table) {
@@ -34,22 +36,24 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
         blocks_.push_back({block.vertex + before, block.shown});
       first_.push_back(static_cast<int>(blocks_.size()));
     }
+    has_copies_ = has_copies_ || (body.own != nullptr && body.own->has_copies_);
     ++number;
   }
 }
 
-PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, const std::vector<bool>& known) {
+PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices) {
+  std::vector<std::vector<int>> copies(whole.vertices_.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    if (const int origin = vertices[v].origin; origin >= 0) copies[at(origin)].push_back(static_cast<int>(v));
   first_.assign(1, 0);
-  for (std::size_t v = 0; v < known.size(); ++v) {
-    const int vertex = static_cast<int>(v);
-    const bool is_old = vertex < whole.vertex_count();
-    vertices_.push_back(is_old ? whole.vertex(vertex) : HalfSpacePoint{});
-    if (!known[v]) vertices_.back().root = 0.0;
-    if (is_old && known[v])
-      for (const Block& block : whole.blocks(vertex))
-        if (known[at(block.vertex)]) blocks_.push_back(block);
+  for (const Copy& copy : vertices) {
+    HalfSpacePoint& p = vertices_.emplace_back(copy.origin >= 0 ? whole.vertex(copy.origin) : HalfSpacePoint{});
+    p.is_changed = copy.is_changed;
+    for (const Block& block : copy.origin >= 0 ? whole.blocks(copy.origin) : std::span<const Block>{})
+      for (const int other : copies[at(block.vertex)]) blocks_.push_back({other, block.shown});
     first_.push_back(static_cast<int>(blocks_.size()));
   }
+  has_copies_ = whole.has_copies_ || std::ranges::any_of(copies, [](const auto& all) { return all.size() > 1; });
 }
 
 PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
@@ -66,6 +70,7 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     p.root += weight * own.root;
     p.poisson_ratio += weight * own.poisson_ratio;
     p.length += weight * own.length;
+    p.is_changed = p.is_changed || own.is_changed;
   }
   return p;
 }

@@ -39,8 +39,13 @@ class ContactRows {
   std::array<int, maximum_tools> count_pressing() const noexcept;
   Candidate& candidate(int row) noexcept { return *candidate_[at(row)]; }
   const Candidate& candidate(int row) const noexcept { return *candidate_[at(row)]; }
-  /// Whether the half-space is known at the point of a row.
-  bool is_known(int row) const noexcept { return compliance_.half_space_point(candidate(row).slot).is_known(); }
+  /// Whether the compliance of the point of a row depends on the area that it stands for.
+  bool has_area(int row) const noexcept { return compliance_.half_space_point(candidate(row).slot).is_known(); }
+  /// Whether the body at the point of a row is the half-space that its compliance assumes.
+  bool is_known(int row) const noexcept {
+    const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
+    return point.is_known() && !point.is_changed;
+  }
   /// The area that the rows with force of every tool stand for [m^2].
   std::array<double, maximum_tools> pressing_area() const noexcept;
 
@@ -67,8 +72,8 @@ class ContactRows {
   /// Stopped too early, it may alternate from tick to tick between two states, since normals follow the unfinished
   /// forces. False when a solution was stopped early.
   bool slide() noexcept;
-  /// Largest change of a normal force in the last turn of slide, relative to the largest normal force.
-  double alternation_change() const noexcept { return alternation_change_; }
+  /// Whether the last turn of slide changed the normal forces by less than a hundredth of the largest.
+  bool has_settled() const noexcept { return !(alternation_change_ > unsettled); }
   bool has_friction() const noexcept { return friction_.acts(); }
   /// Sum of force times penetration without contact force, over the rows of a tool: twice the energy of its contact, if
   /// no other tool presses [J].
@@ -99,14 +104,15 @@ class ContactRows {
   /// iteration was stopped early. No allocation; O(rows^2).
   bool correct_normals(const TissueView& tissue, const Candidates& points, std::span<const ContactTool> tools) noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
-  /// anchor.
+  /// anchor, as do all where the forces have not settled.
   void stick(std::span<const ContactTool> tools) noexcept;
 
  private:
-  static constexpr int least_alternations = 2, maximum_alternations = 16;  // turns of slide
-  static constexpr int alternation_work = 700;                             // turns times rows^2
+  static constexpr int least_alternations = 4, maximum_alternations = 16;  // turns of slide
+  static constexpr int alternation_work = 25'000;                          // turns times rows^2
   static constexpr int full_alternations = 6;  // then half steps: with much friction, full ones may go in a circle
-  static constexpr double alternation_tolerance = 1e-5;
+  static constexpr double alternation_tolerance = 1e-4;
+  static constexpr double unsettled = 0.01;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
@@ -135,7 +141,8 @@ class ContactRows {
   ComplementarityProblem problem_;
   CoulombFriction friction_;
   std::vector<double> free_gap_, pressed_;  // pressed: normal forces that bound the friction forces
-  double floor_ = 0.0, longest_path_ = 0.0, alternation_change_ = 0.0;
+  double floor_ = 0.0, longest_path_ = 0.0;
+  double alternation_change_ = 0.0;  // of a normal force in the last turn of slide, relative to the largest one
   std::uint64_t tick_ = 0;
   PointCompliance compliance_;
   std::vector<Contact> rows_;

@@ -58,7 +58,7 @@ inline const Matrix3& ContactRows::between(const TissueView& tissue, const Candi
                                            Matrix3& workspace) noexcept {
   const Candidate &c = *candidate_[at(i)], &other = *candidate_[at(j)];
   const Matrix3& compliance = compliance_(tissue, points, c.slot, other.slot);
-  if (c.slot != other.slot || !compliance_.half_space_point(c.slot).is_known()) return compliance;
+  if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
   const Matrix3& rotation = compliance_.rotation(c.slot);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);

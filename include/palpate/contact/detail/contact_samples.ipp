@@ -60,7 +60,7 @@ class ContactSamples::Builder {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       Point& p = points_[i];
       const ContactSample& s = made_.samples_[i];
-      for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * surface_.position(s.vertices[a]);
+      for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * at_rest(s.vertices[a]);
       if (const double length = p.normal.norm(); length > 0.0) p.normal /= length;
       p.body = body_of(s.vertices[0]);
     }
@@ -200,7 +200,7 @@ class ContactSamples::Builder {
     return z ^ z >> 31;
   }
 
-  /// Where the half-space is known, areas and normals are in its frame.
+  /// Where the half-space is known, places are in its frame: a body in a group has the same levels and areas as alone.
   const Vector3& at_rest(int v) const noexcept {
     const SubfacetCompliance* const known = surface_.subfacet().get();
     return known != nullptr && known->is_known(v) ? known->vertex(v).position : surface_.position(v);

@@ -17,6 +17,7 @@ struct HalfSpacePoint {
   double poisson_ratio = 0.0;          ///< nu
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
   int body = 0;                        ///< points of different bodies have nothing of each other
+  bool is_changed = false;             ///< the body near it is not that of this half-space any more: it was cut
 
   bool is_known() const noexcept { return root > 0.0; }
 
@@ -69,13 +70,16 @@ PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const H
   return near > 0.0 ? near * step(-2.0 * p.normal.dot(q.normal)) : 0.0;
 }
 
+inline bool is_same_place(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  constexpr double rounding = 1e-9;
+  return p.body == q.body && !((p.position - q.position).norm() > rounding * (p.length + q.length));
+}
+
 /// half_space_compliance times half_space_support: what is added to the compliance of the mesh between two points
 /// [m/N]. Zero for points at the same place.
 inline Matrix3 supported_compliance(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
-  constexpr double same_place = 1e-9;
   const double support = half_space_support(p, q);
-  if (!(support > 0.0) || !((p.position - q.position).norm() > same_place * (p.length + q.length)))
-    return Matrix3::Zero();
+  if (!(support > 0.0) || is_same_place(p, q)) return Matrix3::Zero();
   return support * half_space_compliance(p, q);
 }
 

@@ -29,13 +29,16 @@ class PointLevels {
   double level(int tool) const noexcept { return level_[at(tool)]; }
   /// The last level that has all points of a tool.
   int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
+  /// The last level that has all points that a tool has to know: without areas, points of the next finer level show how
+  /// far it sinks in between its own.
+  int known(int tool) const noexcept { return has_areas_ ? first(tool) : std::max(0, first(tool) - 1); }
   /// The level of a tool that begins to press with this area [m^2], of which parts may not press in the end.
   void start(const ContactSamples& samples, int tool, double area) noexcept;
 
   /// Forgets the points noted before: those of the last round of a tick count.
   void begin_round() noexcept;
   /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m].
-  void note_skipped(double penetration) noexcept { deepest_ = std::max(deepest_, penetration); }
+  void note_skipped(int tool, double penetration) noexcept;
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
   /// Sets the levels for the next tick. Per tool: rows with force, and the area that they stand for [m^2].
@@ -53,7 +56,7 @@ class PointLevels {
   double step(const ContactSamples& samples, std::size_t tool, int used, double area) const noexcept;
   double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
 
-  std::array<int, maximum_tools> share_{}, needed_{}, left_out_{};
+  std::array<int, maximum_tools> share_{}, needed_{}, left_out_{}, skipped_{};
   std::array<double, maximum_tools> radius_{}, level_{}, least_{}, most_{};
   double deepest_ = 0.0;
   int capacity_ = 0, wanted_ = 0;

@@ -71,7 +71,13 @@ PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, 
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
   left_out_.fill(0);
+  skipped_.fill(0);
   deepest_ = 0.0;
+}
+
+PALPATE_INLINE void PointLevels::note_skipped(int tool, double penetration) noexcept {
+  ++skipped_[at(tool)];
+  deepest_ = std::max(deepest_, penetration);
 }
 
 PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noexcept {
@@ -79,11 +85,11 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
   deepest_ = std::max(deepest_, penetration);
 }
 
-/// Without areas a level is whole, and another one only where rows are missing, or where there would be many left.
+/// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
 PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size_t tool, int used,
                                         double area) const noexcept {
-  constexpr double few = 0.4;  // of the rows
-  if (!has_areas_) return left_out_[tool] > 0 ? 1.0 : used < few * share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
+  if (!has_areas_ && left_out_[tool] > 0) return 1.0;
+  if (!has_areas_) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
   const double wanted = level_for(samples, tool, area) - level_[tool];
   return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
 }

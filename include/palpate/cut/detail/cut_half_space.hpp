@@ -4,47 +4,41 @@
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// The compliance of points finer than facets after cuts: that before any cut, but unknown for vertices within three
-/// layers of elements from a node that was split or lost an element. The surface there is that of a slit or of another
-/// mesh. `nodes`: of the vertices, of which the first ones are those of `whole`; null if that is null. Allocates;
-/// O(elements).
+/// The compliance of points finer than facets after cuts: copies of a split node have that of the node, and nodes that
+/// were inside have none. Nodes that were split or lost an element are marked as changed. `nodes`: of the vertices,
+/// first those of `whole`, apart from copies; null if that is null. Allocates; O(elements).
 template <Element E>
 std::shared_ptr<const SubfacetCompliance> half_space_after_cuts(const std::shared_ptr<const SubfacetCompliance>& whole,
                                                                 const CutTopology<E>& topology,
                                                                 std::span<const NodeId> nodes) {
-  constexpr int layers = 3;  // of the patches of ProjectedHalfSpace
   if (whole == nullptr) return nullptr;
   const Mesh<E>& mesh = topology.mesh();
   const auto at = [](NodeId node) { return static_cast<std::size_t>(node); };
-  std::vector<bool> near(static_cast<std::size_t>(mesh.node_count()), false);
-  bool changed = false;
+  std::vector<bool> changed(static_cast<std::size_t>(mesh.node_count()), false);  // per node of the mesh before cuts
+  bool any = false;
+  const auto mark = [&](NodeId node) { changed[at(topology.origin_of(node))] = any = true; };
   for (NodeId node = 0; node < mesh.node_count(); ++node)
-    if (topology.copied_from(node) != node) near[at(topology.origin_of(node))] = changed = true;
-  const auto spread = [&](auto&& starts) {
-    const std::vector<bool> before = near;
-    for (Index e = 0; e < mesh.element_count(); ++e) {
-      const auto& own = mesh.elements[static_cast<std::size_t>(e)];
-      if (!starts(e, before)) continue;
-      for (const NodeId node : own) near[at(topology.origin_of(node))] = changed = true;
-    }
-  };
-  spread([&](Index e, const std::vector<bool>&) { return topology.is_removed(e); });
-  if (!changed && nodes.size() == static_cast<std::size_t>(whole->vertex_count())) return whole;
-  for (int layer = 0; layer < layers; ++layer)
-    spread([&](Index e, const std::vector<bool>& before) {
-      for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)])
-        if (before[at(topology.origin_of(node))]) return true;
-      return false;
-    });
-  std::vector<bool> known;
-  for (const NodeId node : nodes) known.push_back(!near[at(topology.origin_of(node))]);
-  return std::make_shared<SubfacetCompliance>(*whole, known);
+    if (topology.copied_from(node) != node) mark(node);
+  for (Index e = 0; e < mesh.element_count(); ++e)
+    if (topology.is_removed(e)) std::ranges::for_each(mesh.elements[static_cast<std::size_t>(e)], mark);
+  if (!any && nodes.size() == static_cast<std::size_t>(whole->vertex_count())) return whole;
+  std::vector<int> vertex_of(changed.size(), -1);
+  int vertex = 0;
+  for (const NodeId node : nodes)
+    if (topology.origin_of(node) == node && vertex < whole->vertex_count()) vertex_of[at(node)] = vertex++;
+  std::vector<SubfacetCompliance::Copy> copies;
+  for (const NodeId node : nodes) {
+    const NodeId origin = topology.origin_of(node);
+    copies.push_back({vertex_of[at(origin)], changed[at(origin)]});
+  }
+  return std::make_shared<SubfacetCompliance>(*whole, copies);
 }
 
 }}  // namespace palpate

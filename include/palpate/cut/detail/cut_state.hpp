@@ -83,9 +83,7 @@ class CutState {
         system_(topology_, *physics_, kept_nodes(), limits_, &report),
         diagonal_(box_of(topology_.mesh().positions).size().norm()),
         lost_(std::max(report.probe_error, 0.5 * std::numeric_limits<double>::epsilon() * report.condition_estimate)) {
-    const Body<E>& whole = physics_->body;
-    half_space_ = std::make_shared<SubfacetCompliance>(project_half_space(
-        whole, extract_boundary<E>(whole.mesh), touchable_.nodes(), topology_.constrained(), nullptr, limits_));
+    half_space_ = half_space_before_cuts();
     limits_.threads = 1;  // beside a haptic loop from here on
     limits_.progress = {};
     find_supports();
@@ -142,6 +140,17 @@ class CutState {
       if (touchable_.is_used(v))
         displacements.push_back(positions[v] - topology_.mesh().position(touchable_.nodes()[v]));
     return displacements;
+  }
+  /// Parts that touch only at nodes or edges have copies of these from the start: they have what the node has.
+  std::shared_ptr<const SubfacetCompliance> half_space_before_cuts() const {
+    const Body<E>& whole = physics_->body;
+    std::vector<NodeId> touched;
+    for (const NodeId node : touchable_.nodes())
+      if (topology_.origin_of(node) == node) touched.push_back(node);
+    const std::span<const std::uint8_t> constrained = topology_.constrained();
+    return std::make_shared<SubfacetCompliance>(
+        project_half_space(whole, extract_boundary<E>(whole.mesh), touched,
+                           constrained.first(whole.mesh.positions.size()), nullptr, limits_));
   }
   /// Finds how far the nodes that may be touched are from a constrained one, in the body before any cut.
   void find_supports() {

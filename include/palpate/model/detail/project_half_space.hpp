@@ -53,6 +53,7 @@ template <Element E>
 ProjectedHalfSpace project_half_space(const Body<E>& body, const std::vector<BoundaryFace>& boundary,
                                       std::span<const NodeId> touched, std::span<const std::uint8_t> constrained,
                                       const BlockMatrix* own, const SetupLimits& limits) {
+  if (touched.empty()) return {};
   const NodeElements around(body.mesh);
   std::vector<int> material_of;
   for (Index e = 0; e < body.mesh.element_count(); ++e) material_of.push_back(static_cast<int>(body.material_of(e)));

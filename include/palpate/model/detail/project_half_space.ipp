@@ -167,6 +167,7 @@ inline void require_sizes(const HalfSpaceSource& source) {
 }  // namespace detail
 
 PALPATE_INLINE ProjectedHalfSpace project_half_space(const HalfSpaceSource& source, const SetupLimits& limits) {
+  if (source.touched.empty()) return {};
   detail::require_sizes(source);
   return detail::HalfSpaceTable(source, limits).make();
 }

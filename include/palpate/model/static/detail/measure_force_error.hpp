@@ -16,7 +16,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
 /// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
-/// a sixth of the radius there and at most a third of the body's thickness elsewhere, with the same supports. At equal
+/// a third of the radius there and at most a third of the body's thickness elsewhere, with the same supports. At equal
 /// depth the forces differ by the error of the mesh. If the scene is pinched, a second sphere then presses the opposite
 /// side as well, to the same depth: a thin part does not bend, so what the mesh misses is a larger part of the depth.
 class ForceErrorMeasurement {
@@ -65,7 +65,6 @@ class ForceErrorMeasurement {
   void choose_places();
   Place place_at(int vertex) const;
   std::optional<Spot> opposite_of(const SurfacePoint& point) const;
-  double own_error(double depth) const;
   /// Means over the triangles at a vertex.
   struct Facets {
     double length = 0.0, modulus = 0.0;  // [m], contact modulus [Pa]
@@ -86,7 +85,6 @@ class ForceErrorMeasurement {
 
   ForceErrorSource source_;
   std::vector<Place> places_;
-  double edge_ = 0.0;           // of the fine mesh at the places [m]
   double bending_doubt_ = 0.0;  // of the force: of a body that is too thin and large for refine_through
   AccuracyReport report_;
 };

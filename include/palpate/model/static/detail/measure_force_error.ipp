@@ -236,7 +236,7 @@ PALPATE_INLINE void ForceErrorMeasurement::press_reference(const SetupLimits& li
 }
 
 PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& limits) {
-  constexpr double edges_per_radius = 6.0, growth = 0.5, reach = 0.9;
+  constexpr double edges_per_radius = 3.0, growth = 0.5, reach = 0.9;
   constexpr int capacity = 256;
   const auto elasticity = [&](Index e) { return source_.body.elasticity_of(e); };
   std::optional<TetrahedralCopy> copy;
@@ -249,8 +249,8 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   }
   double thickness = infinity;
   const auto boundary = extract_boundary<Tet4>(copy->mesh);
-  edge_ = source_.radius / edges_per_radius;
-  for (const Place& place : places_) edge_ = std::min(edge_, 0.5 * place.length);
+  double edge = source_.radius / edges_per_radius;
+  for (const Place& place : places_) edge = std::min(edge, 0.5 * place.length);
   PointCloud cloud;
   Scene scene;
   std::optional<where::PointSet> touched;
@@ -259,7 +259,7 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   };
   const auto add = [&](const Vector3& point) {
     cloud.points.push_back(point);
-    where::PointSet near = where::sphere(point, reach * source_.radius + 2.0 * edge_);
+    where::PointSet near = where::sphere(point, reach * source_.radius + 2.0 * edge);
     touched = touched ? *touched || near : near;
   };
   for (const Place& place : places_) {
@@ -284,7 +284,7 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
     scene.prescribe(name, components);
   }
   copy->mesh.groups.tidy();
-  Mesh<Tet4> fine = refine_near(copy->mesh, RefineTarget(std::move(cloud)), {edge_, growth});
+  Mesh<Tet4> fine = refine_near(copy->mesh, RefineTarget(std::move(cloud)), {edge, growth});
   if (!refine_through(fine, thickness)) bending_doubt_ = std::min(1.0, std::pow(places_.front().length / thickness, 2));
   report_.nodes = fine.node_count();
   const std::span<const Matrix6> elasticities = source_.body.elasticities();
@@ -294,17 +294,11 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   summarise();
 }
 
-/// The fine mesh is too soft by 0.11 (edge / contact radius)^1.15, give or take a half of that: measured against Tet10
-/// on meshes with edges a fifth of the radius, on the block, the lobe and the organ of bench_force_error.
-PALPATE_INLINE double ForceErrorMeasurement::own_error(double depth) const {
-  return 0.11 * std::pow(edge_ / std::sqrt(source_.radius * depth), 1.15);
-}
-
 /// Missing depth at a place, position and depth, relative to the indentation; nothing where the sphere does not press.
 PALPATE_INLINE std::optional<double> ForceErrorMeasurement::relative_missing(const Place& place, std::size_t position,
                                                                              std::size_t depth) const {
   const double force = place.single.given[position][depth].force;
-  const double truth = place.single.reference[position][depth].force * (1.0 + own_error(depths()[depth]));
+  const double truth = place.single.reference[position][depth].force;
   if (!(truth > 0.0) || !(force > 1e-3 * truth)) return std::nullopt;
   return force / truth - 1.0;
 }
@@ -313,7 +307,8 @@ PALPATE_INLINE std::optional<double> ForceErrorMeasurement::relative_missing(con
 /// others, at equal depth, is added to its doubt. At equal force it would be large on a lobe, which is softer at its
 /// end than at its root.
 PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) const {
-  constexpr double least_doubt = 0.02;  // of the force: places with the same facets differ by that
+  constexpr double least_doubt = 0.01;      // of the force: places with the same facets differ by that
+  constexpr double reference_doubt = 0.01;  // of the force on the fine mesh
   constexpr double part = 0.3;
   MissingDepth result;
   result.facet_length = place.length;
@@ -321,7 +316,7 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
   for (std::size_t p = 0; p < MissingDepth::positions; ++p)
     for (std::size_t i = 0; i < depth.size(); ++i) {
       const auto [force, indentation] = place.single.given[p][i];
-      const double own = own_error(depth[i]), truth = place.single.reference[p][i].force * (1.0 + own);
+      const double truth = place.single.reference[p][i].force;
       const std::optional<double> relative = relative_missing(place, p, i);
       auto& levels = result.levels[p];
       if (!relative) {
@@ -332,7 +327,7 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
       double spread = 0.0;
       for (const Place& other : places_)
         spread = std::max(spread, std::abs(relative_missing(other, p, i).value_or(*relative) - *relative));
-      const double doubt = 0.5 * own * force / truth + least_doubt + bending_doubt_ + part * spread;
+      const double doubt = reference_doubt * force / truth + least_doubt + bending_doubt_ + part * spread;
       levels.push_back({force, *relative * indentation, doubt * indentation});
     }
   return result;
@@ -340,7 +335,6 @@ PALPATE_INLINE MissingDepth ForceErrorMeasurement::missing(const Place& place) c
 
 /// Single spheres and pinches are not mixed: most places of a body can often not be pinched, and would hide the others.
 PALPATE_INLINE void ForceErrorMeasurement::summarise() {
-  const double own = own_error(depths()[summarised]);
   for (const Compared Place::*kind : {&Place::single, &Place::pinched}) {
     double squares = 0.0;
     int compared = 0, places = 0;
@@ -349,7 +343,7 @@ PALPATE_INLINE void ForceErrorMeasurement::summarise() {
       for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
         const auto& [given, reference] = place.*kind;
         if (reference[p].empty()) continue;
-        const double truth = reference[p][summarised].force * (1.0 + own);
+        const double truth = reference[p][summarised].force;
         if (!(truth > 0.0)) continue;
         const double error = given[p][summarised].force / truth - 1.0;
         squares += error * error;
