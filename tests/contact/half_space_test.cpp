@@ -183,3 +183,22 @@ TEST_CASE("the two sides of a slit have no compliance of a half-space between th
   CHECK(supported_compliance(up, down) == Matrix3::Zero());
   CHECK(supported_compliance(up, up) == Matrix3::Zero());  // its own is half_space_self_compliance
 }
+
+TEST_CASE("the displacement by a force is the supported compliance times the force", "[contact][half_space]") {
+  testing::Random random(5);
+  int zero = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto made = [&] {
+      const Vector3 normal = random.vector<3>(-1.0, 1.0) + Vector3(0.0, 0.0, 1.5);
+      return point(random.vector<3>(-5.0, 5.0), normal.normalized(), 1e3, random.uniform() * 0.5);
+    };
+    const HalfSpacePoint p = made(), q = made();
+    const Vector3 force = random.vector<3>(-1.0, 1.0), expected = supported_compliance(p, q) * force;
+    CHECK((supported_displacement(p, q, force) - expected).norm() <= 1e-14 * (1e-3 + expected.norm()));
+    zero += expected.isZero(0.0);
+  }
+  CHECK(zero > 50);
+  CHECK(zero < 950);
+  const HalfSpacePoint same = point(Vector3::Zero(), Vector3::UnitZ(), 1e3, 0.3);
+  CHECK(supported_displacement(same, same, Vector3::UnitX()) == Vector3::Zero());
+}

@@ -70,6 +70,26 @@ PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const H
   return near > 0.0 ? near * step(-2.0 * p.normal.dot(q.normal)) : 0.0;
 }
 
+/// half_space_support and half_space_compliance times a force at q: the displacement of p [m], without the matrix. Zero
+/// for points at the same place. A third of the work.
+PALPATE_ALWAYS_INLINE Vector3 supported_displacement(const HalfSpacePoint& p, const HalfSpacePoint& q,
+                                                     const Vector3& force) noexcept {
+  constexpr double rounding = 1e-9;
+  const Vector3 d = p.position - q.position;
+  const double squared = d.squaredNorm(), edges = p.length + q.length;
+  if (!(squared < 4.0 * edges * edges && squared > rounding * rounding * edges * edges)) return Vector3::Zero();
+  const double support = half_space_support(p, q);
+  if (!(support > 0.0)) return Vector3::Zero();
+  const Vector3 n = 0.5 * (p.normal + q.normal);
+  const double nu = 0.5 * (p.poisson_ratio + q.poisson_ratio);
+  const double per_length = 1.0 / std::sqrt(squared), scale = support * p.root * q.root * per_length;
+  const double across = scale * (1.0 - 2.0 * nu) * per_length, along = d.dot(force);
+  const double of_d = 2.0 * scale * nu * per_length * per_length * along + across * n.dot(force);
+  const double of_force = 2.0 * scale * (1.0 - nu), of_n = across * along;
+  return {of_force * force[0] + of_d * d[0] - of_n * n[0], of_force * force[1] + of_d * d[1] - of_n * n[1],
+          of_force * force[2] + of_d * d[2] - of_n * n[2]};
+}
+
 inline bool is_same_place(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
   constexpr double rounding = 1e-9;
   return p.body == q.body && !((p.position - q.position).norm() > rounding * (p.length + q.length));

@@ -86,8 +86,8 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
     if (load.sample == number)
       u.noalias() += half_space_self_compliance(point, load.area) * load.force;
-    else
-      u.noalias() += SubfacetCompliance::half_space(point, load.point) * load.force;
+    else if (load.point.body == point.body)
+      u += supported_displacement(point, load.point, load.force);
   }
   return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * u) : Vector3(mesh + u);
 }
