@@ -266,7 +266,7 @@ TEST_CASE("when a finer mesh cannot be set up, the model before it is returned",
     return true;
   };
   const auto limited = refine_to_accuracy<AccurateTet4>(mesh, pressed_block(mesh), accurate_material,
-                                                        {.error = 0.002, .most_nodes = 1'000'000, .places = 1}, options);
+                                                        {.error = 0.002, .places = 1}, options);
   CHECK_FALSE(limited.search.reached());
   CAPTURE(limited.search.why_not);
   CHECK(limited.search.why_not.find("no room") != std::string::npos);
