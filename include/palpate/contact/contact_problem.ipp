@@ -591,10 +591,11 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     const double reach = ahead.farthest + 2.0 * rows_.longest_path();
     if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
-    if (!c.facing || c.gap > reach) continue;
-    const Vector3 moved = candidates_.position(tissue, displacement_, c) - c.point;
-    double gap = c.gap + c.normal.dot(ahead.path - moved);
+    double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
+    if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
+    if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
+    gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
     if (!(gap < -allowed)) continue;
     if (is_finer)
       levels_.note_skipped(c.tool, -gap);

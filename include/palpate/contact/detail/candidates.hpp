@@ -84,6 +84,9 @@ class Candidates {
                 Candidate& c) noexcept;
   /// Deformed position of a candidate's point [m].
   Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
+  /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs as
+  /// little [m].
+  double longest_move(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
@@ -142,6 +145,10 @@ class Candidates {
   void store_loaded() noexcept;
   void keep_loaded(const TissueView& tissue, std::span<const ContactTool> tools,
                    SurfaceDisplacement& displacement) noexcept;
+  inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                          const ContactSample& sample) noexcept;
+  bool is_outside(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
+                  Candidate& c) const noexcept;
   inline double known_gap(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;

@@ -128,6 +128,14 @@ PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& to
   rotation_[t] = tool.rotation;
 }
 
+inline Vector3 Candidates::place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                             const ContactSample& sample) noexcept {
+  Vector3 point = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
+  return point;
+}
+
 PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
                                             const Candidate& c) const noexcept {
   const ContactSample& sample = sample_of(c);
@@ -136,10 +144,14 @@ PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDis
       return rest(tissue.contact_surface(), sample) +
              displacement.at_point(tissue, *subfacet_, sample, point, c.sample);
   }
-  Vector3 point = Vector3::Zero();
-  for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] > 0.0) point += sample.weights[a] * displacement.position(tissue, sample.vertices[a]);
-  return point;
+  return place_by_vertices(tissue, displacement, sample);
+}
+
+PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                               const Candidate& c) const noexcept {
+  if (!subfacet_ || !displacement.has_loads()) return infinity;
+  const Vector3 moved = place_by_vertices(tissue, displacement, sample_of(c)) - c.point;
+  return c.normal.dot(moved) + displacement.longest_dent(*subfacet_, samples_);
 }
 
 PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,

@@ -41,6 +41,8 @@ class SurfaceDisplacement {
   /// Adds a force on a point that is known in a SubfacetCompliance, whose parts were added to its vertices.
   void add_load(const PointLoad& load, const ContactSample& sample) noexcept;
 
+  bool has_loads() const noexcept { return load_count_ > 0; }
+
   /// Takes `part` of these forces and 1 - `part` of those of `before`. Forces beyond the capacity are dropped.
   void blend(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
 
@@ -57,6 +59,9 @@ class SurfaceDisplacement {
   /// half-space [m]. O(loads).
   Vector3 at_point(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSample& sample,
                    const HalfSpacePoint& point, int number) noexcept;
+  /// Upper bound of the distance of a point from where the vertices alone put it [m]: twice that of the points with
+  /// loads, for which it is largest. O(loads^2) after the forces have changed, O(1) otherwise.
+  double longest_dent(const SubfacetCompliance& subfacet, const ContactSamples& samples) noexcept;
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
@@ -72,6 +77,9 @@ class SurfaceDisplacement {
  private:
   /// Of the points with loads [m].
   double longest_path() const noexcept;
+  /// What is added to the displacement of the mesh at a known point [m], not rotated. O(loads).
+  Vector3 dent(const SubfacetCompliance& subfacet, const ContactSample& sample, const HalfSpacePoint& point,
+               int number) noexcept;
   /// What the mesh shows of the half-space at a vertex under the loads [m].
   const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
 
@@ -83,7 +91,8 @@ class SurfaceDisplacement {
   std::vector<Vector3> displacement_;
   std::vector<std::uint64_t> stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
-  std::uint64_t generation_ = 1, revision_ = 0;
+  std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
+  double longest_dent_ = 0.0;
 };
 
 }}  // namespace palpate

@@ -73,23 +73,41 @@ PALPATE_INLINE const Vector3& SurfaceDisplacement::shown(const SubfacetComplianc
   return u;
 }
 
-PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, const SubfacetCompliance& subfacet,
-                                                     const ContactSample& sample, const HalfSpacePoint& point,
-                                                     int number) noexcept {
-  Vector3 mesh = Vector3::Zero(), u = Vector3::Zero();
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (sample.weights[a] == 0.0) continue;
-    mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
-    u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
-  }
+PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfacet, const ContactSample& sample,
+                                                 const HalfSpacePoint& point, int number) noexcept {
+  Vector3 u = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
   for (int i = 0; i < load_count_; ++i) {
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
     if (load.sample == number)
       u.noalias() += half_space_self_compliance(point, load.area) * load.force;
     else if (load.point.body == point.body)
-      u += supported_displacement(point, load.point, load.force);
+      add_supported_displacement(point, load.point, load.force, u);
   }
-  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * u) : Vector3(mesh + u);
+  return u;
+}
+
+PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                                                     const ContactSample& sample, const HalfSpacePoint& point,
+                                                     int number) noexcept {
+  Vector3 mesh = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sample.weights[a] != 0.0) mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
+  if (load_count_ == 0) return mesh;
+  const Vector3 added = dent(subfacet, sample, point, number);
+  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
+}
+
+PALPATE_INLINE double SurfaceDisplacement::longest_dent(const SubfacetCompliance& subfacet,
+                                                        const ContactSamples& samples) noexcept {
+  if (std::exchange(dent_stamp_, generation_) == generation_) return longest_dent_;
+  longest_dent_ = 0.0;
+  for (int i = 0; i < load_count_; ++i) {
+    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
+    longest_dent_ = std::max(longest_dent_, 2.0 * dent(subfacet, samples[load.sample], load.point, load.sample).norm());
+  }
+  return longest_dent_;
 }
 
 PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part,
