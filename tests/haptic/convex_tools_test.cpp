@@ -131,9 +131,11 @@ TEST_CASE("a convex tool that appears inside the body is placed outside of it", 
   testing::Random random(322);
   int touching = 0;
   double deepest = infinity;
+  HapticServo of_block(pad, block(), {}), of_spatula(pad, spatula(), {});
   for (int run = 0; run < 60; ++run) {
     const ConvexTool tool = run % 2 ? block() : spatula();
-    HapticServo servo(pad, tool, {});
+    HapticServo& servo = run % 2 ? of_block : of_spatula;
+    servo.reset();
     ToolState state;
     state.position = {random.uniform(0.0, 0.03), random.uniform(0.0, 0.03), random.uniform(0.01, 0.03)};
     const Matrix3 turn = testing::random_rotation(random);

@@ -176,7 +176,7 @@ TEST_CASE("input with a time stamp that is not finite is not fresh", "[haptic][s
 }
 
 TEST_CASE("a teleport of 1 m: slew limit kept, flagged, recovered within 50 ms", "[haptic][servo][extreme][D2]") {
-  Pad pad = test::make_pad("z1", 1e5);
+  Pad pad = test::make_pad("z1", 4e5);
   for (const Vector3& offset : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(0.6, 0.0, 0.8)})
     for (int away : {1, 5, 100}) {
       ServoSession session(pad, slow_gate());
@@ -355,7 +355,7 @@ TEST_CASE("1e5 ticks of random contact sets: slew limit kept, contacts bounded",
     w.check();
     CHECK(w.at_work > 50'000);
   }
-  CHECK(most <= 48);
+  CHECK(most <= 2 * 64);
   CHECK(most >= 5);
   CHECK(limited > 100);
   CHECK(not_converged <= 750);  // a hundredth of the ticks at up to 0.35 m/s; the others jump by up to 3.5 mm

@@ -210,13 +210,16 @@ PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std
   const ContactSurface& surface = tissue.contact_surface();
   if (!surface.has_shell()) return 0.0;
   double all = 0.0, on_rim = 0.0;
-  for (const Contact& c : rows_.contacts()) {
+  for (int i = 0; i < rows_.count(); ++i) {
+    const Contact& c = rows_.contacts()[at(i)];
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
-    bool is_on_rim = true;
+    double beside = 1.0;  // weights of vertices that are not on the rim
     for (std::size_t a = 0; a < 3; ++a)
-      is_on_rim = is_on_rim && (c.weights[a] == 0.0 || surface.goes_on(c.vertices[a], c.normal));
-    if (is_on_rim) on_rim += c.force;
+      if (c.weights[a] > 0.0 && surface.goes_on(c.vertices[a], c.normal)) beside -= c.weights[a];
+    const Candidate& point = rows_.candidate(i);
+    const double length = surface.facet_length(point.triangle), spacing = rows_.has_area(i) ? std::sqrt(point.area) : 0.0;
+    if (beside < 1.0 && beside * length <= std::max(1e-9 * length, spacing)) on_rim += c.force;
   }
   return all > 0.0 ? on_rim / all : 0.0;
 }
@@ -366,6 +369,11 @@ PALPATE_INLINE void ContactProblem::add_errors(const ContactSurface& surface, co
                      error.parts);
 }
 
+/// Whether points have the compliance with which errors are measured at set-up.
+PALPATE_INLINE bool ContactProblem::is_as_measured(const ContactSurface& surface) const noexcept {
+  return candidates_.subfacet() != nullptr || surface.subfacet() == nullptr;
+}
+
 /// A sphere without force may have entered a facet between contact points.
 PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& tissue,
                                                               const ContactTool& tool) const noexcept {
@@ -373,7 +381,7 @@ PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& 
   const ContactSurface& surface = tissue.contact_surface();
   bool any = false;
   for (int b = 0; b < surface.body_count(); ++b) any = any || surface.known_errors(b).accuracy != nullptr;
-  if (!any || !tissue.has_contact_materials()) return unknown;
+  if (!any || !tissue.has_contact_materials() || !is_as_measured(surface)) return unknown;
   const auto closest = surface.closest(tool.proxy);
   if (!(closest.distance < tool.radius)) return none;
   const int vertex = surface.triangle(closest.triangle)[0];
@@ -394,7 +402,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   bool pressed = false, measured = true;
   for (int b = 0; b < surface.body_count(); ++b) {
     KnownErrors body = surface.known_errors(b);
-    if (!tissue.has_contact_materials()) body = {body.first, body.end};
+    if (!tissue.has_contact_materials() || !is_as_measured(surface)) body = {body.first, body.end};
     const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
     if (!(contacts.scale > 0.0)) continue;
     pressed = true;
@@ -415,7 +423,8 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
 
 PALPATE_INLINE ContactSurface::Closest ContactProblem::closest(const TissueView& tissue, const Vector3& position,
                                                                double distance) noexcept {
-  return closest_deformed(tissue, displacement_, position, distance + 2.0 * candidates_.reach(tissue, displacement_));
+  return closest_deformed(tissue, displacement_, candidates_.subfacet(), position,
+                          distance + 2.0 * candidates_.reach(tissue, displacement_));
 }
 
 PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
@@ -590,7 +599,10 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     const double reach = ahead.farthest + 2.0 * rows_.longest_path();
     if (candidates_.least_gap(c) > reach) continue;
-    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
+    if (candidates_.is_stale(c)) {
+      if (candidates_.raise_least_gap(tissue, tool, start_, c) > reach) continue;
+      candidates_.evaluate(tissue, tool, start_, c);
+    }
     double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;

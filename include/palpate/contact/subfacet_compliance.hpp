@@ -51,6 +51,7 @@ class SubfacetCompliance {
   int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
   const HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }
   bool is_known(int v) const noexcept { return vertices_[at(v)].is_known(); }
+  bool has_place(int v) const noexcept { return vertices_[at(v)].length > 0.0; }
   std::span<const Block> blocks(int v) const noexcept {
     return {blocks_.data() + first_[at(v)], static_cast<std::size_t>(first_[at(v) + 1] - first_[at(v)])};
   }
@@ -58,7 +59,8 @@ class SubfacetCompliance {
     return vertices_.size() * sizeof(HalfSpacePoint) + first_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
   }
 
-  /// A point of the surface with this normal; not known unless all of its vertices are.
+  /// A point of the surface with this normal; not known unless all of its vertices are known or fixed. Towards fixed
+  /// vertices the half-space gets stiffer; between them there is none.
   HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
   /// chi G of two different points; zero where one is not known [m/N].
   static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;

@@ -64,7 +64,7 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     const double weight = sample.weights[a];
     if (weight == 0.0) continue;
     const HalfSpacePoint& own = vertex(sample.vertices[a]);
-    if (!own.is_known()) return {};
+    if (!own.is_known() && !own.is_fixed) return {};
     p.body = own.body;
     p.position += weight * own.position;
     p.root += weight * own.root;
@@ -72,6 +72,7 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     p.length += weight * own.length;
     p.is_changed = p.is_changed || own.is_changed;
   }
+  p.is_fixed = p.root == 0.0;
   return p;
 }
 

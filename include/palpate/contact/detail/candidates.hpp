@@ -79,6 +79,10 @@ class Candidates {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
 
+  /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs more
+  /// than that, and returns the bound.
+  double raise_least_gap(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
+                         Candidate& c) const noexcept;
   /// Evaluates a candidate at the present deformation and proxy.
   void evaluate(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                 Candidate& c) noexcept;
@@ -147,8 +151,6 @@ class Candidates {
                    SurfaceDisplacement& displacement) noexcept;
   inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
                                           const ContactSample& sample) noexcept;
-  bool is_outside(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
-                  Candidate& c) const noexcept;
   inline double known_gap(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;

@@ -151,7 +151,17 @@ PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, Surface
                                                const Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return infinity;
   const Vector3 moved = place_by_vertices(tissue, displacement, sample_of(c)) - c.point;
-  return c.normal.dot(moved) + displacement.longest_dent(*subfacet_, samples_);
+  return c.normal.dot(moved) + displacement.largest_bulge(*subfacet_, samples_);
+}
+
+PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, const ContactTool& tool,
+                                                  SurfaceDisplacement& displacement, Candidate& c) const noexcept {
+  if (!subfacet_ || !displacement.has_loads()) return -infinity;
+  const double distance = tool.closest(place_by_vertices(tissue, displacement, sample_of(c))).distance;
+  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(*subfacet_, samples_));
+  c.seen = travel(static_cast<std::size_t>(c.tool));
+  c.evaluated = false;
+  return c.gap;
 }
 
 PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,
@@ -215,9 +225,9 @@ PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDi
     if (contains && c.normal.dot(surface.normal(t)) > 0.0) return true;
   }
   const Triangle& v = surface.triangle(c.triangle);
-  const Vector3 x0 = displacement.position(tissue, v[0]);
-  const Vector3 x1 = displacement.position(tissue, v[1]);
-  const Vector3 x2 = displacement.position(tissue, v[2]);
+  const Vector3 x0 = displacement.dented_position(tissue, subfacet_.get(), v[0]);
+  const Vector3 x1 = displacement.dented_position(tissue, subfacet_.get(), v[1]);
+  const Vector3 x2 = displacement.dented_position(tissue, subfacet_.get(), v[2]);
   return c.normal.dot(cross(x1 - x0, x2 - x0)) > 0.0;
 }
 

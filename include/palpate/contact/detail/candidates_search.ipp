@@ -195,16 +195,6 @@ inline double Candidates::known_gap(int tool, int sample) const noexcept {
   return i < 0 ? -infinity : least_gap(list_.points[i]);
 }
 
-/// Whether a point is outside of the tool by the displacement of its vertices and a bound of what its place by the half-
-/// space differs from that; raises its least gap to that distance. Without half-space: false, it is as well evaluated.
-PALPATE_INLINE bool Candidates::is_outside(const TissueView& tissue, const ContactTool& tool,
-                                           SurfaceDisplacement& displacement, Candidate& c) const noexcept {
-  if (!subfacet_ || !displacement.has_loads()) return false;
-  const double distance = tool.closest(place_by_vertices(tissue, displacement, sample_of(c))).distance;
-  c.gap = std::max(c.gap, distance - tool.radius - displacement.longest_dent(*subfacet_, samples_));
-  return c.gap > 0.0;
-}
-
 /// Adds a point with its least gap to the list if it is near and not there yet. Far points are not evaluated: their
 /// displacement would cost more than the rest of the search, and the reach of the surface is a bound for it, unless
 /// that is large: then points are evaluated that may touch. Points of the present list are not evaluated either when the next one is built in parts: they keep
@@ -216,11 +206,10 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   const double known = search.in_parts ? known_gap(c.tool, c.sample) : -infinity;
   const bool far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && points.count() < list.room;
   c.gap = std::max(c.gap, known);
-  c.evaluated = !(far || known > -infinity || is_outside(tissue, tool, displacement, c));
-  if (c.evaluated)
+  c.evaluated = false;
+  c.seen = travel(search.tool);
+  if (!(far || known > -infinity || raise_least_gap(tissue, tool, displacement, c) > 0.0))
     place(c, position(tissue, displacement, c), tool);
-  else
-    c.seen = travel(search.tool);
   if (!(c.gap <= range) || (list.kept > 0 && points.find(c.tool, c.sample) >= 0)) return;
   c.facing = !c.evaluated || faces_sphere(tissue, displacement, c);
   if (points.count() < list.room) {

@@ -44,7 +44,7 @@ class ContactRows {
   /// Whether the body at the point of a row is the half-space that its compliance assumes.
   bool is_known(int row) const noexcept {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
-    return point.is_known() && !point.is_changed;
+    return (point.is_known() || point.is_fixed) && !point.is_changed;
   }
   /// The area that the rows with force of every tool stand for [m^2].
   std::array<double, maximum_tools> pressing_area() const noexcept;

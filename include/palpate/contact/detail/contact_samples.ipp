@@ -203,7 +203,7 @@ class ContactSamples::Builder {
   /// Where the half-space is known, places are in its frame: a body in a group has the same levels and areas as alone.
   const Vector3& at_rest(int v) const noexcept {
     const SubfacetCompliance* const known = surface_.subfacet().get();
-    return known != nullptr && known->is_known(v) ? known->vertex(v).position : surface_.position(v);
+    return known != nullptr && known->has_place(v) ? known->vertex(v).position : surface_.position(v);
   }
   /// A number that a point keeps when other triangles are cut, or its body joins others.
   std::uint64_t key_of(const ContactSample& s) const noexcept {

@@ -8,23 +8,25 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE TriangleOffset offset_from(const TissueView& tissue, SurfaceDisplacement& displacement, int triangle,
+PALPATE_INLINE TriangleOffset offset_from(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                          const SubfacetCompliance* subfacet, int triangle,
                                           const Vector3& position) noexcept {
   const Triangle& v = tissue.contact_surface().triangle(triangle);
-  const Vector3 a = displacement.position(tissue, v[0]), b = displacement.position(tissue, v[1]),
-                c = displacement.position(tissue, v[2]);
+  const Vector3 a = displacement.dented_position(tissue, subfacet, v[0]), b = displacement.dented_position(tissue, subfacet, v[1]),
+                c = displacement.dented_position(tissue, subfacet, v[2]);
   const TrianglePoint on = closest_point(position, a, b, c);
   return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a), on.feature};
 }
 
 PALPATE_INLINE ContactSurface::Closest closest_deformed(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                                        const Vector3& position, double reach) noexcept {
+                                                        const SubfacetCompliance* subfacet, const Vector3& position,
+                                                        double reach) noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   ContactSurface::Closest best;
   double nearest = infinity, height = 0.0;
   bool on_rim = false;
   surface.bvh().visit_near(position, reach, [&](int triangle) {
-    const TriangleOffset from = offset_from(tissue, displacement, triangle, position);
+    const TriangleOffset from = offset_from(tissue, displacement, subfacet, triangle, position);
     const double squared = from.offset.squaredNorm(), area = from.normal.norm();
     if (squared > nearest * (1.0 + 1e-9) || !(area > 0.0)) return;
     // Triangles that share the closest edge or vertex are equally near: the one that is seen least at an angle decides.

@@ -18,6 +18,7 @@ struct HalfSpacePoint {
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
   int body = 0;                        ///< points of different bodies have nothing of each other
   bool is_changed = false;             ///< the body near it is not that of this half-space any more: it was cut
+  bool is_fixed = false;               ///< its displacement along the normal is prescribed: `root` is 0
 
   bool is_known() const noexcept { return root > 0.0; }
 
@@ -77,8 +78,8 @@ PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const H
 /// half_space_support and half_space_compliance times a force at q, added to the displacement `u` of p [m]; nothing for
 /// points at the same place. Written out, because ticks after a jump spend most of their time here: about 90 flops, a
 /// root and a division, and 10 flops for points without support.
-inline void add_supported_displacement(const HalfSpacePoint& p, const HalfSpacePoint& q, const Vector3& force,
-                                       Vector3& u) noexcept {
+PALPATE_ALWAYS_INLINE void add_supported_displacement(const HalfSpacePoint& p, const HalfSpacePoint& q,
+                                                      const Vector3& force, Vector3& u) noexcept {
   constexpr double rounding = 1e-9;
   const double *const x = p.position.data(), *const y = q.position.data(), *const f = force.data();
   const double *const m = p.normal.data(), *const n = q.normal.data();

@@ -16,6 +16,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 class PointLevels {
  public:
   static constexpr double finest_spacing = 0.125, coarsest_spacing = 0.5;  ///< of points, in radii
+  /// Of a tool that does not press: it begins to press when it is a hundredth of its radius in the surface, or earlier.
+  static constexpr double first_spacing = 0.25;
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
 
   /// Back to the state after construction.
@@ -57,7 +59,7 @@ class PointLevels {
   double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
 
   std::array<int, maximum_tools> share_{}, needed_{}, left_out_{}, skipped_{};
-  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, most_{};
+  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{};
   double deepest_ = 0.0;
   int capacity_ = 0, wanted_ = 0;
   bool has_areas_ = false;

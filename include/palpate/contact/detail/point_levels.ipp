@@ -6,20 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
                                             const std::array<double, maximum_tools>& radius, int capacity,
                                             bool has_areas, int wanted) noexcept {
-  radius_ = radius;
+  const std::array<double, maximum_tools> before = std::exchange(radius_, radius);
   capacity_ = capacity;
   has_areas_ = has_areas;
   wanted_ = wanted;
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius[t] > 0.0)) continue;
     least_[t] = has_areas ? samples.level_with(finest_spacing * radius[t]) : 0.0;
+    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : 0.0;
     most_[t] = samples.level_with((has_areas ? coarsest_spacing : coarsest_of_mesh) * radius[t]);
+    if (!(before[t] > 0.0)) level_[t] = first_[t];
     level_[t] = std::clamp(level_[t], least_[t], std::max(least_[t], most_[t]));
   }
   divide();
@@ -66,7 +69,7 @@ PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std:
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
-  if (has_areas_ && area > 0.0) level_[at(tool)] = level_for(samples, at(tool), area);
+  if (has_areas_ && area > 0.0) level_[at(tool)] = std::max(first_[at(tool)], level_for(samples, at(tool), area));
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -100,7 +103,7 @@ PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const s
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
-      level_[t] = 0.0;
+      level_[t] = first_[t];
       continue;
     }
     level_[t] += step(samples, t, used[t], area[t]);

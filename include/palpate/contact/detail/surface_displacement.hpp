@@ -59,11 +59,15 @@ class SurfaceDisplacement {
   /// half-space [m]. O(loads).
   Vector3 at_point(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSample& sample,
                    const HalfSpacePoint& point, int number) noexcept;
-  /// Upper bound of the distance of a point from where the vertices alone put it [m]: twice that of the points with
-  /// loads, for which it is largest. O(loads^2) after the forces have changed, O(1) otherwise.
-  double longest_dent(const SubfacetCompliance& subfacet, const ContactSamples& samples) noexcept;
+  /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
+  /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
+  /// taken. O(loads^2) after the forces have changed, O(1) otherwise.
+  double largest_bulge(const SubfacetCompliance& subfacet, const ContactSamples& samples) noexcept;
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
+
+  /// The same with the dent of the half-space, where `subfacet` is not null and the vertex is known [m]. O(loads).
+  Vector3 dented_position(const TissueView& tissue, const SubfacetCompliance* subfacet, int vertex) noexcept;
 
   /// Distance of a vertex from where the surface is expected, or else from its place at rest [m].
   double deviation(const TissueView& tissue, int vertex) noexcept;
@@ -77,7 +81,8 @@ class SurfaceDisplacement {
  private:
   /// Of the points with loads [m].
   double longest_path() const noexcept;
-  /// What is added to the displacement of the mesh at a known point [m], not rotated. O(loads).
+  /// What is added to the displacement of the mesh at a known point [m], not rotated. `number`: of its sample; -1 where
+  /// it is not known. O(loads).
   Vector3 dent(const SubfacetCompliance& subfacet, const ContactSample& sample, const HalfSpacePoint& point,
                int number) noexcept;
   /// What the mesh shows of the half-space at a vertex under the loads [m].
@@ -92,7 +97,7 @@ class SurfaceDisplacement {
   std::vector<std::uint64_t> stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
-  double longest_dent_ = 0.0;
+  double largest_bulge_ = 0.0;
 };
 
 }}  // namespace palpate

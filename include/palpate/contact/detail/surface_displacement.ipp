@@ -80,7 +80,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfa
     if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
   for (int i = 0; i < load_count_; ++i) {
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-    if (load.sample == number)
+    if (load.sample == number || (number < 0 && is_same_place(point, load.point)))
       u.noalias() += half_space_self_compliance(point, load.area) * load.force;
     else if (load.point.body == point.body)
       add_supported_displacement(point, load.point, load.force, u);
@@ -99,15 +99,15 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
   return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
 }
 
-PALPATE_INLINE double SurfaceDisplacement::longest_dent(const SubfacetCompliance& subfacet,
+PALPATE_INLINE double SurfaceDisplacement::largest_bulge(const SubfacetCompliance& subfacet,
                                                         const ContactSamples& samples) noexcept {
-  if (std::exchange(dent_stamp_, generation_) == generation_) return longest_dent_;
-  longest_dent_ = 0.0;
+  if (std::exchange(dent_stamp_, generation_) == generation_) return largest_bulge_;
+  largest_bulge_ = 0.0;
   for (int i = 0; i < load_count_; ++i) {
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-    longest_dent_ = std::max(longest_dent_, 2.0 * dent(subfacet, samples[load.sample], load.point, load.sample).norm());
+    largest_bulge_ = std::max(largest_bulge_, 0.5 * dent(subfacet, samples[load.sample], load.point, load.sample).norm());
   }
-  return longest_dent_;
+  return largest_bulge_;
 }
 
 PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part,
@@ -139,6 +139,14 @@ PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, int vertex) noexcept {
   return tissue.contact_surface().position(vertex) + at(tissue, vertex);
+}
+
+PALPATE_INLINE Vector3 SurfaceDisplacement::dented_position(const TissueView& tissue,
+                                                            const SubfacetCompliance* subfacet, int vertex) noexcept {
+  if (subfacet == nullptr || load_count_ == 0 || !subfacet->is_known(vertex)) return position(tissue, vertex);
+  const ContactSample sample{{vertex, vertex, vertex}, {1.0, 0.0, 0.0}};
+  return tissue.contact_surface().position(vertex) +
+         at_point(tissue, *subfacet, sample, subfacet->vertex(vertex), -1);
 }
 
 PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, int vertex) noexcept {

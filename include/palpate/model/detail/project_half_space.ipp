@@ -15,6 +15,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
+/// Whether the components that are prescribed, a bit each, have more than half of the normal.
+inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexcept {
+  double part = 0.0;
+  for (int c = 0; c < 3; ++c)
+    if ((components >> c & 1) != 0) part += normal[c] * normal[c];
+  return part > 0.5;
+}
+
 /// Projects all vertices of a source and collects the results.
 class HalfSpaceTable {
  public:
@@ -60,6 +68,8 @@ PALPATE_INLINE void HalfSpaceTable::place_vertices() {
       marks.set(HalfSpaceMark::no_surface);
       continue;
     }
+    point.is_fixed = is_fixed_along(point.normal, source_.constrained[static_cast<std::size_t>(node)]);
+    if (point.is_fixed) continue;
     point.root = HalfSpacePoint::root_of(material.shear_modulus);
     if (source_.boundary.is_sharp(node)) marks.set(HalfSpaceMark::sharp_edge);
   }

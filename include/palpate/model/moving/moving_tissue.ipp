@@ -70,8 +70,9 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   view.surface.expect(view.pressed, {});
   view.surface.set_unloaded(unloaded());
   view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
-  view.surface.set_subfacet(
-      std::make_shared<SubfacetCompliance>(elastic_body().half_space(touchable.nodes, conditions, limits())));
+  if (!touchable.elements.empty())
+    view.surface.set_subfacet(
+        std::make_shared<SubfacetCompliance>(elastic_body().half_space(touchable.nodes, conditions, limits())));
   views_.fill(view);
   drawn_.fill(start_);
   setup_report().compliance_bytes = compliance_.bytes() + static_cast<std::size_t>(near_bytes);
