@@ -176,7 +176,7 @@ TEST_CASE("input with a time stamp that is not finite is not fresh", "[haptic][s
 }
 
 TEST_CASE("a teleport of 1 m: slew limit kept, flagged, recovered within 50 ms", "[haptic][servo][extreme][D2]") {
-  Pad pad = test::make_pad("z1", 4e5);
+  Pad pad = test::make_pad("z1", 6e5);
   for (const Vector3& offset : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(0.6, 0.0, 0.8)})
     for (int away : {1, 5, 100}) {
       ServoSession session(pad, slow_gate());

@@ -69,6 +69,8 @@ struct ContactTool {
   Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]
   double rotational_compliance = 0.0;             ///< of the coupling [rad/(N m)]; 0 is rigid
   double end_path = 0.0;                          ///< bound of the path of its core by rotation, last tick [m]
+  Vector3 outward = Vector3::Zero();  ///< of a sphere that presses: where it came from, unit; else zero
+  double entered = 0.0;               ///< height of its highest contact at rest above its centre, along `outward` [m]
 
   Vector3 friction_displacement = Vector3::Zero(),
           friction_rotation = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
@@ -84,7 +86,8 @@ struct ContactTool {
   Vector3 axis() const noexcept;
   /// The point of the core closest to `p`.
   CorePoint closest(const Vector3& p) const noexcept {
-    return half_length > 0.0 ? closest_extended(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
+    if (half_length > 0.0) return closest_extended(p);
+    return outward.squaredNorm() > 0.0 ? closest_pressed(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
   }
   /// Whether the core is within a distance of `p`; true for some points that are slightly farther from a hull.
   bool is_within(const Vector3& p, double distance) const noexcept {
@@ -95,7 +98,9 @@ struct ContactTool {
   /// Centre of a sphere that contains the core [m].
   Vector3 middle() const noexcept;
   /// Radius of that sphere [m].
-  double core_radius() const noexcept { return hull == nullptr ? half_length : hull->radius(); }
+  double core_radius() const noexcept {
+    return hull != nullptr ? hull->radius() : half_length > 0.0 ? half_length : std::max(0.0, entered);
+  }
   /// Upper bound of the path of the device since the last tick, at the end that moved most [m].
   double path_length() const noexcept;
   /// Longest path of the proxy in one linearisation: contact points up to this distance are in the list.
@@ -103,6 +108,7 @@ struct ContactTool {
 
  private:
   CorePoint closest_extended(const Vector3& p) const noexcept;
+  CorePoint closest_pressed(const Vector3& p) const noexcept;
   bool is_within_extended(const Vector3& p, double distance) const noexcept;
   double along_capsule(const Vector3& p, const Vector3& direction) const noexcept {
     return std::clamp(direction.dot(p - proxy), -half_length, half_length);

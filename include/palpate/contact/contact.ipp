@@ -19,6 +19,8 @@ PALPATE_INLINE void ContactTool::lift() noexcept {
   active = grasping = false;
   force.setZero();
   torque.setZero();
+  outward.setZero();
+  entered = 0.0;
 }
 PALPATE_INLINE void ContactTool::reset() noexcept {
   ContactTool fresh;
@@ -47,6 +49,22 @@ PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const n
   const Vector3 direction = axis();
   const double along = along_capsule(p, direction);
   return from_core(p, proxy + along * direction, along * own_axis);
+}
+/// A sphere that presses deeper than its radius would part the surface and pass, because linear tissue gives way to the
+/// side. Material that it entered is therefore kept from its cap and from the cone that is tangent to it: no normal is
+/// farther from `outward` than the rim of the cap. On plane tissue nothing is beyond that rim until the sphere is about
+/// a radius deep.
+PALPATE_INLINE CorePoint ContactTool::closest_pressed(const Vector3& p) const noexcept {
+  constexpr double cosine = 0.5, sine = 0.8660254037844386;  // of the rim of the cap, from the pole
+  const CorePoint own = from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
+  const double height = outward.dot(p - proxy);
+  if (own.normal.dot(outward) >= cosine || height > entered) return own;
+  Vector3 aside = p - proxy - height * outward;
+  const double distance = aside.norm();
+  aside = distance > 0.0 ? Vector3(aside / distance) : outward.unitOrthogonal();
+  const Vector3 normal = cosine * outward - sine * aside;
+  const double along = sine * distance - cosine * height;
+  return {p + along * normal - proxy, normal, along};
 }
 PALPATE_INLINE bool ContactTool::is_within_extended(const Vector3& p, double distance) const noexcept {
   if (hull != nullptr) return hull->may_be_within(rotation.transpose() * (p - proxy), distance);

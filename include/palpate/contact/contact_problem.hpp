@@ -140,6 +140,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(Tools tools) noexcept;
+  void set_outward(Tools tools) noexcept;
   void note_forces_of_lifted(Tools tools) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;

@@ -124,6 +124,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rounds_left_ = maximum_rounds;
   status |= tissue.require_columns({});  // before the revision is read
   note_forces_of_lifted(tools);
+  set_outward(tools);
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
@@ -165,6 +166,28 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, rest <= unsettled);
   return status;
+}
+
+/// The direction is the mean normal of the contacts while the centre is above all of them.
+PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    ContactTool& tool = tools[t];
+    if (tool.half_length > 0.0) continue;
+    if (tool.force.squaredNorm() == 0.0) {  // also where it restarts elsewhere
+      tool.outward.setZero();
+      tool.entered = 0.0;
+      continue;
+    }
+    const auto presses = [&](const Contact& c) { return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0; };
+    Vector3 sum = Vector3::Zero();
+    for (const Contact& c : rows_.contacts())
+      if (presses(c)) sum += c.force * c.normal;
+    const bool is_shallow = tool.outward.squaredNorm() == 0.0 || tool.entered < -0.5 * tool.radius;
+    if (is_shallow && sum.squaredNorm() > 0.0) tool.outward = sum.normalized();
+    tool.entered = -infinity;
+    for (const Contact& c : rows_.contacts())
+      if (presses(c)) tool.entered = std::max(tool.entered, tool.outward.dot(c.rest - tool.proxy));
+  }
 }
 
 /// Adds up the forces that are still on the tissue although their tools are gone or restart elsewhere. While a

@@ -166,7 +166,8 @@ class Candidates {
   int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
-  std::array<Vector3, maximum_tools> proxy_;
+  std::array<Vector3, maximum_tools> proxy_, outward_;
+  std::array<double, maximum_tools> entered_{};
   std::array<Matrix3, maximum_tools> rotation_;
   std::array<bool, maximum_tools> was_active_{};
   std::array<int, maximum_tools> level_{};

@@ -36,6 +36,8 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   valid_ = is_new_ = lost_forces_ = false;
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
+  outward_.fill(Vector3::Zero());
+  entered_.fill(0.0);
   rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
   level_.fill(0);
@@ -121,8 +123,10 @@ PALPATE_INLINE void Candidates::begin_tick(const ContactSurface& surface, std::s
 }
 
 PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& tool) noexcept {
-  travel_[t] += (tool.proxy - proxy_[t]).norm();
+  travel_[t] += (tool.proxy - proxy_[t]).norm() + (tool.outward - outward_[t]).norm() * tool.radius + std::abs(std::max(0.0, tool.entered) - entered_[t]);
   proxy_[t] = tool.proxy;
+  outward_[t] = tool.outward;
+  entered_[t] = std::max(0.0, tool.entered);
   if (tool.half_length == 0.0) return;
   travel_[t] += tool.core_path(tool.rotation - rotation_[t]);
   rotation_[t] = tool.rotation;

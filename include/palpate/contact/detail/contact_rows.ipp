@@ -34,7 +34,10 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
   }
   row.arm = -tool.radius * row.normal;
   row.offset = -tool.radius;
-  if (tool.half_length == 0.0) return;
+  if (tool.half_length == 0.0) {
+    row.arm += c.core;  // beside its cap; across the normal
+    return;
+  }
   row.arm += tool.rotation * c.core;
   row.offset += row.normal.dot(tool.target_rotation * c.core);
 }
