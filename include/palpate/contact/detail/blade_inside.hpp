@@ -10,10 +10,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Length of the part of the edge from a to b that is in tissue [m]; frame of the surface. Every crossing of a line
 /// with a closed boundary enters or leaves tissue, and tissue is where more were entered than left. So two walls of a
 /// closed slit cancel, rounding moves the ends of the parts by no more than itself, and tissue that is pressed into
-/// tissue counts once, up to 64 crossings within the edge, and beyond that as often as it is there. An edge with an end
-/// that is not finite has no length. Beside an open surface: where points are behind it, between 9 points of the edge
-/// by bisection; `reach` [m]: of the walls of a slit that are pressed into each other. O(log triangles + triangles near
-/// the line).
+/// tissue counts once. If the edge crosses the boundary more than 64 times, overlapping tissue counts once per layer.
+/// An edge with an end that is not finite has no length. Beside an open surface: the part of the edge that is behind
+/// the surface, found between 9 points of the edge by bisection; `reach` [m] is how far the walls of a slit may be
+/// pressed into each other. O(log triangles + triangles near the line).
 double length_in_tissue(const ContactSurface& surface, const Vector3& a, const Vector3& b, double reach) noexcept;
 
 }}  // namespace palpate
