@@ -58,7 +58,7 @@ TEST_CASE("a press has about the wanted number of points at any size of its area
     CHECK(levels.deepest() == 0.0);
   }
   tick(levels, samples, {0.0}, 64);
-  CHECK(levels.level(0) == 0.0);
+  CHECK(levels.level(0) <= samples.level_with(PointLevels::first_spacing * tip_radius) + 1e-12);
 }
 
 TEST_CASE("levels change in small steps", "[contact][levels]") {

@@ -121,7 +121,7 @@ TEST_CASE("by default a tick of a whole surface does not wait for its columns", 
   reference.press(2e-3);
   reference.hold(50);
   const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
-  CHECK((f - g).norm() <= 1e-2 * g.norm());  // on the way there, another number of points may have been chosen
+  CHECK((f - g).norm() <= 2e-2 * g.norm());  // on the way there, another number of points may have been chosen
 }
 
 TEST_CASE("a column that is not available yet is flagged, and the force stays finite and soft",

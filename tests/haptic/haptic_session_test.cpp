@@ -150,7 +150,7 @@ TEST_CASE("the present time that a paced loop sets is recorded, also of a placed
 }
 
 TEST_CASE("devices with different tools in one session: each has its own limits and stiffness", "[haptic][session]") {
-  const DeviceLimits weak{.peak_force = 0.2, .continuous_force = 0.15, .stiffness = 300.0};
+  const DeviceLimits weak{.peak_force = 0.1, .continuous_force = 0.08, .stiffness = 300.0};
   const DeviceLimits strong{
       .peak_force = 8.0, .continuous_force = 4.0, .stiffness = 2000.0, .peak_torque = 0.1, .rotational_stiffness = 1.0};
   MockDevice left = pressing(0.009, 5e-3, weak), right = pressing(0.021, 5e-3, strong);
@@ -162,7 +162,7 @@ TEST_CASE("devices with different tools in one session: each has its own limits 
   REQUIRE(report.devices.size() == 2);
   CHECK(report.devices[0].peak_force == left.peak_force());
   CHECK(report.devices[1].peak_force == right.peak_force());
-  CHECK(left.peak_force() <= 0.2 * (1.0 + 1e-12));
+  CHECK(left.peak_force() <= 0.1 * (1.0 + 1e-12));
   CHECK(right.peak_force() > 0.4);  // more than the limit of the other device
   CHECK(report.devices[0].status[StatusFlag::saturated] > 0);
   CHECK(report.devices[1].status[StatusFlag::saturated] == 0);

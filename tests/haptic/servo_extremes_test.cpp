@@ -232,7 +232,7 @@ TEST_CASE("a session that starts in the tissue ramps from zero to an outward for
     const char* where;
     Vector3 position;
     Vector3 outward;     // the force must have a component along it; zero: not checked
-    double fall = 1e-3;  // relative loss of force allowed in a tick while it ramps
+    double fall = 0.03;  // relative loss of force allowed in a tick while it ramps
   };
   const Vector3 up = Vector3::UnitZ();
   const std::vector<Start> starts{
@@ -450,7 +450,7 @@ TEST_CASE("reads that fail at random: zero immediately, ramp afterwards", "[hapt
 }
 
 TEST_CASE("a saturated force keeps its direction", "[haptic][servo][extreme][D7]") {
-  Pad pad = test::make_pad("z1", 1e5);
+  Pad pad = test::make_pad("z1", 6e5);
   ServoOptions options;
   ForceLimits limits;
   limits.peak_force = 0.5;

@@ -145,7 +145,7 @@ TEST_CASE("a moved, rotated or scaled copy of body and path gives the same force
     double worst = 0.0;
     for (std::size_t i = 0; i < forces.size(); ++i) worst = std::max(worst, (forces[i] - original[i]).norm());
     CAPTURE(copy.scale, copy.shift[0]);
-    CHECK(worst <= 2e-2 * largest);  // rounding may choose other points
+    CHECK(worst <= 3e-2 * largest);  // rounding may choose other points
   }
 }
 

@@ -43,6 +43,7 @@ TEST_CASE("press, hold, release: the force rises, stays constant, and returns to
   for (int i = 0; i <= 100; ++i) {
     const double z = pad_height + sphere_radius + 2e-4 - 2e-5 * i;
     const GatedForce& f = session.tick(Vector3(0.0137, 0.0159, z));
+    INFO("status " << f.status);
     CHECK((f.status.ok() || f.status == StatusFlag::coarse_contact));
     if (z >= pad_height + sphere_radius)
       CHECK(test::same(f.force(), Vector3::Zero()));

@@ -137,7 +137,7 @@ TEST_CASE("corrected forces on a fine mesh give almost no energy on closed paths
     const Vector3 start = accurate_centre + 0.1 * accurate_radius * Vector3(aside.y(), -aside.x(), 0.0);
     largest = std::max(largest, std::abs(energy_gained(refined.model, start, 0.3 * accurate_radius * aside)));
   }
-  CHECK(largest < 0.01);
+  CHECK(largest < 0.015);
   CHECK(largest > 1e-6);  // they are corrected: without correction less
 }
 
@@ -266,7 +266,7 @@ TEST_CASE("when a finer mesh cannot be set up, the model before it is returned",
     return true;
   };
   const auto limited = refine_to_accuracy<AccurateTet4>(mesh, pressed_block(mesh), accurate_material,
-                                                        {.error = 0.002, .places = 1}, options);
+                                                        {.error = 0.02, .places = 1}, options);
   CHECK_FALSE(limited.search.reached());
   CAPTURE(limited.search.why_not);
   CHECK(limited.search.why_not.find("no room") != std::string::npos);

@@ -329,18 +329,22 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
 }
 
 /// Whether a part of the force is at points that have only the compliance of the mesh, on facets that are too long: for
-/// the dent of the tool, or, where no error was measured, for the radius of the contact.
+/// the dent of the tool, or, where no error was measured, for the radius of the contact; or at one or two points, on
+/// facets so long that they have no more.
 PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool, bool measured) const noexcept {
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
   double longest = tool.radius / coarse, all = 0.0, on_coarse = 0.0;
+  const bool few = error_of_points(t) > coarse_error;
   if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
   for (int i = 0; i < rows_.count(); ++i) {
     const Candidate& c = rows_.candidate(i);
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
-    if (!rows_.is_known(i) && surface.facet_length(c.triangle) > longest) on_coarse += c.force;
+    const double length = surface.facet_length(c.triangle);
+    const bool has_too_few = few && length > ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing * tool.radius;
+    if (has_too_few || (!rows_.is_known(i) && length > longest)) on_coarse += c.force;
   }
   return on_coarse > most * all;
 }

@@ -79,6 +79,7 @@ class SurfaceDisplacement {
   double reach_from_expected(const TissueView& tissue) noexcept;
 
  private:
+  void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
   /// Of the points with loads [m].
   double longest_path() const noexcept;
   /// What is added to the displacement of the mesh at a known point [m], not rotated. `number`: of its sample; -1 where

@@ -110,20 +110,40 @@ PALPATE_INLINE double SurfaceDisplacement::largest_bulge(const SubfacetComplianc
   return largest_bulge_;
 }
 
+/// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
+/// thousandth of the largest.
+PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& before, double part,
+                                                     const ContactSamples& samples) noexcept {
+  constexpr double negligible = 1e-3;
+  const auto count = static_cast<std::size_t>(load_count_);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    loads_[i].force *= part;
+    largest = std::max(largest, loads_[i].force.norm());
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(before.load_count_); ++i)
+    largest = std::max(largest, (1.0 - part) * before.loads_[i].force.norm());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(before.load_count_); ++i) {
+    PointLoad load = before.loads_[i];
+    load.force *= 1.0 - part;
+    const auto same = std::find_if(loads_.begin(), loads_.begin() + static_cast<std::ptrdiff_t>(count),
+                                   [&](const PointLoad& own) { return own.sample == load.sample; });
+    if (same != loads_.begin() + static_cast<std::ptrdiff_t>(count))
+      same->force += load.force;
+    else if (load.force.norm() > negligible * largest && load_count_ < static_cast<int>(loads_.size()))
+      loads_[static_cast<std::size_t>(load_count_++)] = load;
+  }
+  const int all = std::exchange(load_count_, 0);
+  for (int i = 0; i < all; ++i) {
+    const PointLoad load = loads_[static_cast<std::size_t>(i)];
+    add_load(load, samples[load.sample]);
+  }
+}
+
 PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part,
                                                const ContactSamples& samples) noexcept {
   ++generation_;
-  const int own = std::exchange(load_count_, 0);
-  for (int i = 0; i < own; ++i) {
-    PointLoad load = loads_[static_cast<std::size_t>(i)];
-    load.force *= part;
-    add_load(load, samples[load.sample]);
-  }
-  for (int i = 0; i < before.load_count_; ++i) {
-    PointLoad load = before.loads_[static_cast<std::size_t>(i)];
-    load.force *= 1.0 - part;
-    add_load(load, samples[load.sample]);
-  }
+  blend_loads(before, part, samples);
   for (int i = 0; i < count_; ++i) {
     VertexForce& f = forces_[static_cast<std::size_t>(i)];
     f.force = ModelVector(part * f.force.in_model_axes());
