@@ -179,6 +179,12 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
     Box box;
     for (const int v : surface.triangle(triangle)) box.include(expected_position(surface, v));
     if (box.squared_distance(tool.middle()) > near * near) return;
+    if (subfacet_ && search.reach > 0.25 * tool.radius && displacement.has_loads()) {  // where its vertices are now
+      Box moved;
+      for (const int v : surface.triangle(triangle)) moved.include(displacement.position(tissue, v));
+      const double within = near - search.reach + displacement.largest_bulge(*subfacet_, samples_, tool.radius);
+      if (moved.squared_distance(tool.middle()) > within * within) return;
+    }
   }
   for (int sample = first; sample < end && samples_.level_of(sample) >= level; ++sample) {
     const double squared = squared_distance(samples_[sample]);
@@ -197,7 +203,7 @@ inline double Candidates::known_gap(int tool, int sample) const noexcept {
 
 /// Adds a point with its least gap to the list if it is near and not there yet. Far points are not evaluated: their
 /// displacement would cost more than the rest of the search, and the reach of the surface is a bound for it, unless
-/// that is large: then points are evaluated that may touch. Points of the present list are not evaluated either when the next one is built in parts: they keep
+/// that is large: then the displacement of the vertices gives a bound, or all of it. Points of the present list are not evaluated either when the next one is built in parts: they keep
 /// their bounds. When the list is full, it is complete only up to the nearest point left out. Points that press stay.
 PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, Candidate& c,
                                          const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
@@ -208,7 +214,7 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   c.gap = std::max(c.gap, known);
   c.evaluated = false;
   c.seen = travel(search.tool);
-  if (!(far || known > -infinity || raise_least_gap(tissue, tool, displacement, c) > 0.0))
+  if (!(far || known > -infinity || raise_least_gap(tissue, tool, displacement, c) > -infinity))
     place(c, position(tissue, displacement, c), tool);
   if (!(c.gap <= range) || (list.kept > 0 && points.find(c.tool, c.sample) >= 0)) return;
   c.facing = !c.evaluated || faces_sphere(tissue, displacement, c);

@@ -61,12 +61,13 @@ class SurfaceDisplacement {
                    const HalfSpacePoint& point, int number) noexcept;
   /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
   /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken. O(loads^2) after the forces have changed, O(1) otherwise.
-  double largest_bulge(const SubfacetCompliance& subfacet, const ContactSamples& samples) noexcept;
+  /// taken, or a quarter of the tool's radius. O(loads^2) after the forces have changed, O(1) otherwise.
+  double largest_bulge(const SubfacetCompliance& subfacet, const ContactSamples& samples, double radius) noexcept;
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
-  /// The same with the dent of the half-space, where `subfacet` is not null and the vertex is known [m]. O(loads).
+  /// The same with the dent of the half-space, where `subfacet` is not null and the vertex is known [m]. O(loads) once
+  /// after the forces have changed.
   Vector3 dented_position(const TissueView& tissue, const SubfacetCompliance* subfacet, int vertex) noexcept;
 
   /// Distance of a vertex from where the surface is expected, or else from its place at rest [m].
@@ -94,11 +95,11 @@ class SurfaceDisplacement {
   int count_ = 0, load_count_ = 0;
   std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
   std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;
-  std::vector<Vector3> displacement_;
-  std::vector<std::uint64_t> stamp_;
+  std::vector<Vector3> displacement_, dented_;
+  std::vector<std::uint64_t> stamp_, dented_stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
-  double largest_bulge_ = 0.0;
+  double largest_dent_ = 0.0;
 };
 
 }}  // namespace palpate

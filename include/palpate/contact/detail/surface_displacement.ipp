@@ -16,7 +16,9 @@ PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capaci
       shown_stamp_(static_cast<std::size_t>(vertices), 0),
       loaded_stamp_(static_cast<std::size_t>(vertices), 0),
       displacement_(static_cast<std::size_t>(vertices)),
+      dented_(static_cast<std::size_t>(vertices)),
       stamp_(static_cast<std::size_t>(vertices), 0),
+      dented_stamp_(static_cast<std::size_t>(vertices), 0),
       slot_(static_cast<std::size_t>(vertices), -1) {}
 
 PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noexcept {
@@ -26,6 +28,8 @@ PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noex
 PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noexcept {
   displacement_.swap(fresh.displacement_);
   stamp_.swap(fresh.stamp_);
+  dented_.swap(fresh.dented_);
+  dented_stamp_.swap(fresh.dented_stamp_);
   slot_.swap(fresh.slot_);
   shown_.swap(fresh.shown_);
   loaded_.swap(fresh.loaded_);
@@ -100,14 +104,16 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
 }
 
 PALPATE_INLINE double SurfaceDisplacement::largest_bulge(const SubfacetCompliance& subfacet,
-                                                        const ContactSamples& samples) noexcept {
-  if (std::exchange(dent_stamp_, generation_) == generation_) return largest_bulge_;
-  largest_bulge_ = 0.0;
-  for (int i = 0; i < load_count_; ++i) {
-    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-    largest_bulge_ = std::max(largest_bulge_, 0.5 * dent(subfacet, samples[load.sample], load.point, load.sample).norm());
+                                                         const ContactSamples& samples, double radius) noexcept {
+  if (std::exchange(dent_stamp_, generation_) != generation_) {
+    largest_dent_ = 0.0;
+    for (int i = 0; i < load_count_; ++i) {
+      const PointLoad& load = loads_[static_cast<std::size_t>(i)];
+      largest_dent_ =
+          std::max(largest_dent_, dent(subfacet, samples[load.sample], load.point, load.sample).norm());
+    }
   }
-  return largest_bulge_;
+  return std::min(0.5 * largest_dent_, 0.25 * radius);
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
@@ -164,9 +170,12 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::position(const TissueView& tissue, i
 PALPATE_INLINE Vector3 SurfaceDisplacement::dented_position(const TissueView& tissue,
                                                             const SubfacetCompliance* subfacet, int vertex) noexcept {
   if (subfacet == nullptr || load_count_ == 0 || !subfacet->is_known(vertex)) return position(tissue, vertex);
-  const ContactSample sample{{vertex, vertex, vertex}, {1.0, 0.0, 0.0}};
-  return tissue.contact_surface().position(vertex) +
-         at_point(tissue, *subfacet, sample, subfacet->vertex(vertex), -1);
+  const auto i = static_cast<std::size_t>(vertex);
+  if (std::exchange(dented_stamp_[i], generation_) != generation_) {
+    const ContactSample sample{{vertex, vertex, vertex}, {1.0, 0.0, 0.0}};
+    dented_[i] = at_point(tissue, *subfacet, sample, subfacet->vertex(vertex), -1);
+  }
+  return tissue.contact_surface().position(vertex) + dented_[i];
 }
 
 PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, int vertex) noexcept {
