@@ -291,10 +291,12 @@ class TortureSession {
     const std::vector<bool> inverted = inverted_nodes(u);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
       const Tool& tool = tools_[t];
-      // A sphere much smaller than the facets is in a dent that they do not show.
       if (tool.status.has(StatusFlag::coarse_contact) || tool.force.norm() == 0.0) continue;
       const auto closest = deformed.closest(in_model(servo_->proxy(t)));
       if (!(closest.distance < -1e-9 * thickness_)) continue;
+      // A sphere smaller than the facets is in a dent that they do not show. It is pushed out of it.
+      const Vector3 push = model_->to_world().linear().transpose() * tool.force;
+      if (tool.radius < edge_ && push.dot(deformed.normal(closest.triangle)) > 0.0) continue;
       const Triangle& v = surface.triangle(closest.triangle);
       const bool everted = std::any_of(v.begin(), v.end(), [&](int i) {
         return inverted[static_cast<std::size_t>(model_->touchable_nodes()[static_cast<std::size_t>(i)])];

@@ -9,7 +9,7 @@ namespace {
 
 TEST_CASE("random tools on random bodies never lose the tissue", "[extreme][torture][D4][D10][D11][D12][D13][D14]") {
   const char* wanted = std::getenv("PALPATE_TORTURE_SESSIONS");
-  const int sessions = wanted != nullptr ? std::atoi(wanted) : 60;
+  const int sessions = wanted != nullptr ? std::atoi(wanted) : 12;
   const test::TortureCounts counts = test::torture(1, sessions, 2000, wanted != nullptr);
   std::printf(
       "contact torture: %ld sessions, %ld ticks, %ld ticks of tools with force, %ld steady presses\n"

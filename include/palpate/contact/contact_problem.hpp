@@ -139,7 +139,7 @@ class ContactProblem {
   inline void note_pressing(Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
-  void follow(Tools tools) noexcept;
+  void follow(const TissueView& tissue, Tools tools) noexcept;
   void set_outward(Tools tools) noexcept;
   void note_forces_of_lifted(Tools tools) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;

@@ -150,7 +150,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     if (candidates_.is_new()) prefetch(tissue);
     std::swap(start_, displacement_);
     solve_linearised(tissue, tools, iteration, status);
-    follow(tools);
+    follow(tissue, tools);
     proxies_.end(tools);
     change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
     const bool converged = has_converged(tools, iteration, before, change);
@@ -586,8 +586,8 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
     if (arrived_) {
       candidates_.place(c, c.point, tool);
     } else {
-      if (!arrived_) c.history.known = 0;
-      candidates_.evaluate(tissue, tool, start_, c);
+      c.history.known = 0;
+      if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, start_, c);
     }
   }
 }
@@ -674,14 +674,14 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
 }
 
 /// Takes the step to the solution, or the part of it within which the list of candidates is complete.
-PALPATE_INLINE void ContactProblem::follow(Tools tools) noexcept {
+PALPATE_INLINE void ContactProblem::follow(const TissueView& tissue, Tools tools) noexcept {
   const double part = proxies_.follow(tools, floor_, rows_.longest_path());
   arrived_ = proxies_.arrived();
   of_lifted_ = part < 1.0 ? (1.0 - part) * of_lifted_ : 0.0;
   if (part == 1.0)
     rows_.place_points();
   else
-    displacement_.blend(start_, part, candidates_.samples());
+    displacement_.blend(tissue, start_, part, candidates_.samples());
   candidates_.move_surface(2.0 * part * rows_.longest_path());
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) candidates_.move_sphere(t, tools[t]);

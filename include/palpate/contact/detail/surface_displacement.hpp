@@ -1,6 +1,7 @@
 // Displacement of the vertices of the contact surface under the forces of the tools.
 #pragma once
 
+#include <palpate/contact/detail/half_space_loads.hpp>
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
@@ -13,7 +14,7 @@ struct PointLoad {
   int sample = -1;
   HalfSpacePoint point;
   double area = 0.0;                ///< that the point stands for [m^2]
-  double path = 0.0;                ///< displacement of the point [m]
+  Vector3 moved = Vector3::Zero();  ///< displacement of the point [m]
   Vector3 force = Vector3::Zero();  ///< [N], in the axes of the SubfacetCompliance
 };
 
@@ -44,7 +45,8 @@ class SurfaceDisplacement {
   bool has_loads() const noexcept { return load_count_ > 0; }
 
   /// Takes `part` of these forces and 1 - `part` of those of `before`. Forces beyond the capacity are dropped.
-  void blend(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
+  void blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
+             const ContactSamples& samples) noexcept;
 
   /// Displacement of a vertex under the forces [m].
   const Vector3& at(const TissueView& tissue, int vertex) noexcept {
@@ -61,8 +63,10 @@ class SurfaceDisplacement {
                    const HalfSpacePoint& point, int number) noexcept;
   /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
   /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken, or a quarter of the tool's radius. O(loads^2) after the forces have changed, O(1) otherwise.
-  double largest_bulge(const SubfacetCompliance& subfacet, const ContactSamples& samples, double radius) noexcept;
+  /// taken, or a quarter of the tool's radius. O(loads) after the forces have changed, O(1) otherwise.
+  double largest_bulge(const TissueView& tissue, const ContactSamples& samples, double radius) noexcept {
+    return std::min(0.5 * largest_dent(tissue, samples), 0.25 * radius);
+  }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
 
@@ -80,6 +84,8 @@ class SurfaceDisplacement {
   double reach_from_expected(const TissueView& tissue) noexcept;
 
  private:
+  /// The largest difference of a loaded point from where the vertices alone put it [m].
+  double largest_dent(const TissueView& tissue, const ContactSamples& samples) noexcept;
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
   /// Of the points with loads [m].
   double longest_path() const noexcept;
@@ -92,6 +98,7 @@ class SurfaceDisplacement {
 
   std::vector<VertexForce> forces_;
   std::vector<PointLoad> loads_;
+  HalfSpaceLoads half_space_;  // the same loads
   int count_ = 0, load_count_ = 0;
   std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
   std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;

@@ -11,6 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity)
     : forces_(static_cast<std::size_t>(capacity)),
       loads_(static_cast<std::size_t>(capacity)),
+      half_space_(capacity),
       shown_(static_cast<std::size_t>(vertices)),
       loaded_(static_cast<std::size_t>(vertices)),
       shown_stamp_(static_cast<std::size_t>(vertices), 0),
@@ -56,6 +57,7 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
 
 PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
   if (load_count_ == static_cast<int>(loads_.size())) return;
+  half_space_.set(load_count_, load.point, load.force);
   loads_[static_cast<std::size_t>(load_count_++)] = load;
   for (std::size_t a = 0; a < 3; ++a) {
     if (sample.weights[a] == 0.0) continue;
@@ -82,12 +84,11 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfa
   Vector3 u = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  half_space_.add_displacement(load_count_, point, u);
   for (int i = 0; i < load_count_; ++i) {
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
     if (load.sample == number || (number < 0 && is_same_place(point, load.point)))
       u.noalias() += half_space_self_compliance(point, load.area) * load.force;
-    else if (load.point.body == point.body)
-      add_supported_displacement(point, load.point, load.force, u);
   }
   return u;
 }
@@ -103,17 +104,19 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
   return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
 }
 
-PALPATE_INLINE double SurfaceDisplacement::largest_bulge(const SubfacetCompliance& subfacet,
-                                                         const ContactSamples& samples, double radius) noexcept {
-  if (std::exchange(dent_stamp_, generation_) != generation_) {
-    largest_dent_ = 0.0;
-    for (int i = 0; i < load_count_; ++i) {
-      const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-      largest_dent_ =
-          std::max(largest_dent_, dent(subfacet, samples[load.sample], load.point, load.sample).norm());
-    }
+PALPATE_INLINE double SurfaceDisplacement::largest_dent(const TissueView& tissue,
+                                                        const ContactSamples& samples) noexcept {
+  if (std::exchange(dent_stamp_, generation_) == generation_) return largest_dent_;
+  largest_dent_ = 0.0;
+  for (int i = 0; i < load_count_; ++i) {
+    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
+    const ContactSample& sample = samples[load.sample];
+    Vector3 dent = load.moved;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (sample.weights[a] != 0.0) dent -= sample.weights[a] * at(tissue, sample.vertices[a]);
+    largest_dent_ = std::max(largest_dent_, dent.norm());
   }
-  return std::min(0.5 * largest_dent_, 0.25 * radius);
+  return largest_dent_;
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
@@ -125,6 +128,7 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
   double largest = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     loads_[i].force *= part;
+    loads_[i].moved *= part;
     largest = std::max(largest, loads_[i].force.norm());
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(before.load_count_); ++i)
@@ -132,10 +136,11 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
   for (std::size_t i = 0; i < static_cast<std::size_t>(before.load_count_); ++i) {
     PointLoad load = before.loads_[i];
     load.force *= 1.0 - part;
+    load.moved *= 1.0 - part;
     const auto same = std::find_if(loads_.begin(), loads_.begin() + static_cast<std::ptrdiff_t>(count),
                                    [&](const PointLoad& own) { return own.sample == load.sample; });
     if (same != loads_.begin() + static_cast<std::ptrdiff_t>(count))
-      same->force += load.force;
+      same->force += load.force, same->moved += load.moved;
     else if (load.force.norm() > negligible * largest && load_count_ < static_cast<int>(loads_.size()))
       loads_[static_cast<std::size_t>(load_count_++)] = load;
   }
@@ -146,9 +151,12 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
   }
 }
 
-PALPATE_INLINE void SurfaceDisplacement::blend(const SurfaceDisplacement& before, double part,
+/// The dents of both are linear in their forces: their blended sum is a bound for the largest.
+PALPATE_INLINE void SurfaceDisplacement::blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
                                                const ContactSamples& samples) noexcept {
-  ++generation_;
+  largest_dent_ =
+      part * largest_dent(tissue, samples) + (1.0 - part) * before.largest_dent(tissue, samples);
+  dent_stamp_ = ++generation_;
   blend_loads(before, part, samples);
   for (int i = 0; i < count_; ++i) {
     VertexForce& f = forces_[static_cast<std::size_t>(i)];
@@ -195,7 +203,7 @@ PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView&
 
 PALPATE_INLINE double SurfaceDisplacement::longest_path() const noexcept {
   double longest = 0.0;
-  for (int i = 0; i < load_count_; ++i) longest = std::max(longest, loads_[static_cast<std::size_t>(i)].path);
+  for (int i = 0; i < load_count_; ++i) longest = std::max(longest, loads_[static_cast<std::size_t>(i)].moved.norm());
   return longest;
 }
 
