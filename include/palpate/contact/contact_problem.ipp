@@ -168,7 +168,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   return status;
 }
 
-/// The direction is the mean normal of the contacts while the centre is above all of them.
+/// The direction is the mean normal of the contacts while the centre is above all of them. A sphere between two parts
+/// that push against each other came from neither.
 PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
@@ -179,11 +180,13 @@ PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
       continue;
     }
     const auto presses = [&](const Contact& c) { return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0; };
+    constexpr double common = 0.5;  // part of the forces
     Vector3 sum = Vector3::Zero();
+    double all = 0.0;
     for (const Contact& c : rows_.contacts())
-      if (presses(c)) sum += c.force * c.normal;
+      if (presses(c)) sum += c.force * c.normal, all += c.force;
     const bool is_shallow = tool.outward.squaredNorm() == 0.0 || tool.entered < -0.5 * tool.radius;
-    if (is_shallow && sum.squaredNorm() > 0.0) tool.outward = sum.normalized();
+    if (is_shallow && all > 0.0) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
     tool.entered = -infinity;
     for (const Contact& c : rows_.contacts())
       if (presses(c)) tool.entered = std::max(tool.entered, tool.outward.dot(c.rest - tool.proxy));
