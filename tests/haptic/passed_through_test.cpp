@@ -113,7 +113,7 @@ TEST_CASE("a jump deep into the tissue is flagged where the tool is not pushed b
   for (int i = 0; i < 300; ++i) {
     const double push = sphere.tick(to);
     CHECK((push > 0.1 || sphere.last.has(StatusFlag::lost_contact) || sphere.last.has(StatusFlag::reacquired) ||
-           sphere.last.has(StatusFlag::solver_not_converged)));
+           sphere.last.has(StatusFlag::solver_not_converged) || sphere.last.has(StatusFlag::large_displacement)));
   }
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("a tool that was inside and leaves on the way it came is not flagged a
   CHECK(sphere.push() == 0.0);
   CHECK(sphere.last.ok());
   const double before = sphere.most;
-  sphere.press(2e-3, 2e-4);
+  sphere.press(1e-3, 2e-4);  // deeper the contact reaches the rim of the touchable part
   CHECK_FALSE(sphere.last.has(StatusFlag::lost_contact));
   CHECK(sphere.push() > 0.01 * before);
 }

@@ -29,7 +29,7 @@ struct ContactParameters {
   double force_tolerance = 1e-3;    ///< relative change of the force between linearisations that ends the tick; for
                                     ///< spheres without friction also its estimate after the first one
   bool subfacet_compliance = true;  ///< points finer than facets, where the surface has a SubfacetCompliance
-  int pressing_points = 24;         ///< of them in a press, about the same at any depth and on any mesh
+  int pressing_points = 18;         ///< of them in a press, about the same at any depth and on any mesh
   double sample_spacing = 0.5;      ///< of contact points on other surfaces, in radii of the smallest tool
   double friction = 0.0;            ///< Coulomb's coefficient; 0 has no cost
   double grasp_radius = 0.0;        ///< [m] a tool that grasps holds the vertices within it, up to eight; 0: one point

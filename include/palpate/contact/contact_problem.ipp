@@ -129,12 +129,11 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
   candidates_.begin_tick(tissue.contact_surface(), tools);
-  const auto near = radii_near(tools);
+  auto near = radii_near(tools);
   share_rows(near);
   for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
-  if (const auto now = radii_near(tools); now != near) share_rows(now);
   double change = 0.0, before = 0.0, rest = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
     if (rounds_left_ <= 0) {
@@ -143,6 +142,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     }
     proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
+    if (const auto now = radii_near(tools); now != near) share_rows(near = now);
     if (iteration == 0) {
       start_levels(tissue, tools);
       grasp(tissue, tools);

@@ -92,7 +92,7 @@ class ContactSamples::Builder {
       Cells cells(points_, least_distance * made_.spacing(level));
       for (const int i : taken) cells.add(i);
       for (const int i : order) {
-        if (made_.level_[at(i)] > 0 || cells.nearest(points_[at(i)]) >= 0) continue;
+        if (made_.level_[at(i)] > 0 || cells.has_near(points_[at(i)])) continue;
         made_.level_[at(i)] = static_cast<std::uint8_t>(level);
         cells.add(i);
         taken.push_back(i);
@@ -153,42 +153,60 @@ class ContactSamples::Builder {
   /// neighbours: they are on two sides of a thin part, or of an edge.
   class Cells {
    public:
-    Cells(const std::vector<Point>& points, double size)
-        : points_(points), size_(size), head_(std::bit_ceil(points.size() + 1), -1), next_(points.size(), -1) {}
+    /// For points that are closer than `distance`: with cells of twice that they are in eight of them.
+    Cells(const std::vector<Point>& points, double distance)
+        : points_(points),
+          squared_(distance * distance),
+          per_size_(0.5 / distance),
+          head_(std::bit_ceil(points.size() + 1), -1),
+          next_(points.size(), -1) {}
     void add(int i) {
-      int& head = head_[slot(cell(points_[at(i)].position))];
+      const Vector3& x = points_[at(i)].position;
+      int& head = head_[slot(cell(x[0]), cell(x[1]), cell(x[2]))];
       next_[at(i)] = std::exchange(head, i);
     }
-    /// The nearest point that is closer than the size of a cell; -1 when none is.
+    bool has_near(const Point& p) const noexcept {
+      return visit(p, [this, &p](int i) { return squared_distance(p, i) < squared_; });
+    }
+    /// The nearest point that is closer than the distance; -1 when none is.
     int nearest(const Point& p) const noexcept {
       int best = -1;
-      double least = size_ * size_;
-      const Cell c = cell(p.position);
-      for (std::int64_t x = -1; x <= 1; ++x)
-        for (std::int64_t y = -1; y <= 1; ++y)
-          for (std::int64_t z = -1; z <= 1; ++z)
-            for (int i = head_[slot({c[0] + x, c[1] + y, c[2] + z})]; i >= 0; i = next_[at(i)]) {
-              const Point& other = points_[at(i)];
-              const double squared = (other.position - p.position).squaredNorm();
-              if (squared < least && other.normal.dot(p.normal) > 0.5 && other.body == p.body)
-                least = squared, best = i;
-            }
+      double least = squared_;
+      visit(p, [&](int i) {
+        if (const double squared = squared_distance(p, i); squared < least) least = squared, best = i;
+        return false;
+      });
       return best;
     }
 
    private:
-    using Cell = std::array<std::int64_t, 3>;
-    Cell cell(const Vector3& x) const noexcept {
-      return {static_cast<std::int64_t>(std::floor(x[0] / size_)), static_cast<std::int64_t>(std::floor(x[1] / size_)),
-              static_cast<std::int64_t>(std::floor(x[2] / size_))};
-    }
-    std::size_t slot(const Cell& c) const noexcept {
-      std::uint64_t key = 0;
-      for (const std::int64_t x : c) key = (key ^ static_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+    std::int64_t cell(double x) const noexcept { return static_cast<std::int64_t>(std::floor(x * per_size_)); }
+    std::size_t slot(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
+      std::uint64_t key = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u;
+      key = (key ^ static_cast<std::uint64_t>(y)) * 0x9e3779b97f4a7c15u;
+      key = (key ^ static_cast<std::uint64_t>(z)) * 0x9e3779b97f4a7c15u;
       return static_cast<std::size_t>((key ^ key >> 32) & (head_.size() - 1));
     }
+    /// Infinite for points that are not neighbours.
+    double squared_distance(const Point& p, int i) const noexcept {
+      const Point& other = points_[at(i)];
+      if (other.body != p.body || !(other.normal.dot(p.normal) > 0.5)) return infinity;
+      return (other.position - p.position).squaredNorm();
+    }
+    /// Calls `visitor` with the points of the eight cells until it returns true; whether it did.
+    template <typename Visitor>
+    bool visit(const Point& p, Visitor&& visitor) const noexcept {
+      std::array<std::int64_t, 3> first;
+      for (std::size_t c = 0; c < 3; ++c)
+        first[c] = static_cast<std::int64_t>(std::floor(p.position[static_cast<Index>(c)] * per_size_ - 0.5));
+      for (int k = 0; k < 8; ++k)
+        for (int i = head_[slot(first[0] + (k & 1), first[1] + (k >> 1 & 1), first[2] + (k >> 2))]; i >= 0;
+             i = next_[at(i)])
+          if (visitor(i)) return true;
+      return false;
+    }
     const std::vector<Point>& points_;
-    double size_;
+    double squared_, per_size_;
     std::vector<int> head_, next_;
   };
 
