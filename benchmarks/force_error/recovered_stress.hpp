@@ -11,9 +11,9 @@ namespace force_error {
 /// Excess of the contact force of the last tick over that on a fine mesh [N], from the stress under its contact forces
 /// f alone. u_h is the solution for f, e its error. Because K u_h = f on the mesh, f^T (W - W_h) f = |e|^2 (energy
 /// norm), and the recovered stress estimates |e|. So |e|^2 / F is the missing depth of a force F, without
-/// ContactParameters::subfacet_compliance; it becomes a force as in ForceAccuracy. Valid for elements that are integrated exactly and
-/// compatible: not for smoothed strain, mean dilatation. It does not see the shape of the facets and the spacing of
-/// contact points. One solve and one recovery of stress: milliseconds.
+/// ContactParameters::subfacet_compliance; it becomes a force as in ForceAccuracy. Valid for elements that are
+/// integrated exactly and compatible: not for smoothed strain, mean dilatation. It does not see the shape of the facets
+/// and the spacing of contact points. One solve and one recovery of stress: milliseconds.
 template <class Model>
 double recovery_estimate(Model& model, const palpate::HapticServo& servo) {
   std::vector<palpate::VertexForce> forces;

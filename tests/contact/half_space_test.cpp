@@ -1,5 +1,5 @@
 // Fields and compliance of an elastic half-space.
-#include <palpate/contact/detail/half_space.hpp>
+#include <palpate/contact/detail/half_space_loads.hpp>
 #include <palpate/contact/detail/half_space_field.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
 #include <palpate/testing/random.hpp>
@@ -184,25 +184,41 @@ TEST_CASE("the two sides of a slit have no compliance of a half-space between th
   CHECK(supported_compliance(up, up) == Matrix3::Zero());  // its own is half_space_self_compliance
 }
 
-TEST_CASE("the displacement by a force is the supported compliance times the force", "[contact][half_space]") {
+TEST_CASE("the displacement by many loads is the sum of the supported compliance times the forces",
+          "[contact][half_space]") {
   testing::Random random(5);
+  const auto made = [&] {
+    const Vector3 normal = random.vector<3>(-1.0, 1.0) + Vector3(0.0, 0.0, 1.5);
+    HalfSpacePoint p = point(random.vector<3>(-5.0, 5.0), normal.normalized(), 1e3, random.uniform() * 0.5);
+    p.body = random.uniform() < 0.2 ? 1 : 0;
+    return p;
+  };
   int zero = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const auto made = [&] {
-      const Vector3 normal = random.vector<3>(-1.0, 1.0) + Vector3(0.0, 0.0, 1.5);
-      return point(random.vector<3>(-5.0, 5.0), normal.normalized(), 1e3, random.uniform() * 0.5);
-    };
-    const HalfSpacePoint p = made(), q = made();
-    const Vector3 force = random.vector<3>(-1.0, 1.0), expected = supported_compliance(p, q) * force;
-    Vector3 u = Vector3::Zero();
-    add_supported_displacement(p, q, force, u);
-    CHECK((u - expected).norm() <= 1e-14 * (1e-3 + expected.norm()));
-    zero += expected.isZero(0.0);
+  for (int count = 0; count <= 9; ++count) {
+    HalfSpaceLoads loads(9);
+    for (int i = 0; i < 9; ++i) loads.set(i, made(), Vector3::Ones());  // of a larger count before
+    std::vector<HalfSpacePoint> points;
+    std::vector<Vector3> forces;
+    for (int i = 0; i < count; ++i) {
+      points.push_back(made());
+      forces.push_back(random.vector<3>(-1.0, 1.0));
+      loads.set(i, points.back(), forces.back());
+    }
+    for (int k = 0; k < 200; ++k) {
+      const bool is_loaded = k % 10 == 0 && count > 0;
+      const HalfSpacePoint p = is_loaded ? points[static_cast<std::size_t>(k) % points.size()] : made();
+      Vector3 expected(1e-3, 2e-3, 3e-3), u = expected;
+      double scale = 1e-3;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points[i].body != p.body) continue;
+        const Vector3 part = supported_compliance(p, points[i]) * forces[i];
+        expected += part;
+        scale += part.norm();
+        zero += part.isZero(0.0);
+      }
+      loads.add_displacement(count, p, u);
+      CHECK((u - expected).norm() <= 1e-13 * scale);
+    }
   }
   CHECK(zero > 50);
-  CHECK(zero < 950);
-  const HalfSpacePoint same = point(Vector3::Zero(), Vector3::UnitZ(), 1e3, 0.3);
-  Vector3 u(1.0, 2.0, 3.0);
-  add_supported_displacement(same, same, Vector3::UnitX(), u);
-  CHECK(u == Vector3(1.0, 2.0, 3.0));
 }

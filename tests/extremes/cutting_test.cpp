@@ -77,8 +77,7 @@ void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
 /// Cuts one body at random under a sphere that moves over it, until no element is supported or `most` cuts are made.
 void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
   const auto mesh = body_to_cut(kind);
-  Cut tissue(mesh, scene_of(mesh),
-                              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1e3});
+  Cut tissue(mesh, scene_of(mesh), LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1e3});
   CutSession servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   testing::Random random(seed);
@@ -207,7 +206,7 @@ TEST_CASE("the example organ, cut 60 times per second next to a tool: slew and e
   for (NodeId node = 0; node < mesh.node_count(); ++node)
     if (mesh.position(node)[2] < 0.0) below.push_back(node);
   Cut tissue(mesh, Scene().fix("ligament").fix(below).touch("front").gravity({0.0, 0.0, -9.81}),
-                              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
+             LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   const EnergyLimits energy = EnergyLimits::from(DeviceLimits{});
   CutSession servo(tissue, SphereTool{}, {}, EnergyTank(energy));
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});

@@ -271,7 +271,8 @@ TEST_CASE("a capsule is flagged where a sphere of its radius is", "[haptic][coar
     scene.fix("x0").fix("x1").touch("z1", {.radius = radius});
     SetupOptions options;
     options.force_error = measured_force_error();
-    test::Pad plate(box_tet4(Vector3(0.04, 0.04, 0.012), {cells, cells, cells / 6}), scene, tissue(cells > 6 ? 0.3 : 0.45), options);
+    test::Pad plate(box_tet4(Vector3(0.04, 0.04, 0.012), {cells, cells, cells / 6}), scene,
+                    tissue(cells > 6 ? 0.3 : 0.45), options);
     const auto press = [&, radius = radius](const ToolList& tool, double depth) {
       HapticServo servo(plate, tool, Tip::options());
       ToolState state;
@@ -309,11 +310,10 @@ TEST_CASE("a sphere on softer tissue does not hide the flag of a capsule", "[hap
   scene.fix("x0").fix("x1").touch("z1", {.radius = radius});
   SetupOptions options;
   options.force_error = measured_force_error();
-  test::Pad block(
-      mesh, scene,
-      RegionMaterials<LinearElastic>{{"soft", LinearElastic{50.0, 0.45, 1000.0}},
-                                     {"firm", LinearElastic{5e3, 0.45, 1000.0}}},
-      options);
+  test::Pad block(mesh, scene,
+                  RegionMaterials<LinearElastic>{{"soft", LinearElastic{50.0, 0.45, 1000.0}},
+                                                 {"firm", LinearElastic{5e3, 0.45, 1000.0}}},
+                  options);
   for (const bool alone : {true, false}) {
     CAPTURE(alone);
     HapticServo servo(block, {SphereTool{.radius = radius}, CapsuleTool(radius, 4e-3)}, Tip::options());

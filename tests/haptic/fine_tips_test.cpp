@@ -11,9 +11,9 @@ namespace {
 
 /// How a press on one place ended.
 struct Press {
-  int reacquired = 0;  // ticks
-  int lost = 0;        // ticks without force after the first contact
-  double change = 0.0; // of the force while the device rests, relative
+  int reacquired = 0;   // ticks
+  int lost = 0;         // ticks without force after the first contact
+  double change = 0.0;  // of the force while the device rests, relative
 };
 
 /// Presses a sphere down to `depth` in 300 ticks at (x, y), and waits there.

@@ -339,7 +339,8 @@ TEST_CASE("viscoelastic tissue at small strain relaxes, too", "[haptic][soft][vi
   Soft<Viscoelastic<LinearElastic, 1>> tissue(pad(), pad_scene(), material, {}, with_step(0.01));
   Soft<LinearElastic> elastic(pad(), pad_scene(), fast, {}, with_step(0.01));
   const auto slight = [](double t) { return std::min(0.001, 0.05 * t); };
-  const double at_first = press(tissue, 60, slight).force[2], unrelaxed = press(elastic, 2000, slight, 0.0, on_facets()).force[2];
+  const double at_first = press(tissue, 60, slight).force[2],
+               unrelaxed = press(elastic, 2000, slight, 0.0, on_facets()).force[2];
   const double at_last = press(tissue, 4000, [](double) { return 0.001; }).force[2];
   CHECK(at_first > 0.8 * unrelaxed);
   Soft<LinearElastic> slow(pad(), pad_scene(), LinearElastic{0.4 * 5e3, 0.45, 1000.0}, {}, with_step(0.01));

@@ -90,16 +90,16 @@ class ContactProblem {
   };
   /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
   static constexpr int vertices_per_contact = 12;
-  static constexpr int maximum_rounds = 12;              // solutions of the contact problem per tick
-  static constexpr int added_per_round = 16;             // rows, those of deepest penetration
-  static constexpr double unsettled = 0.05;              // relative change of force that is left and is flagged
-  static constexpr double growing = 0.005;               // the same where a change is larger than the one before
-  static constexpr double first_change_safety = 10.0;    // factor on the change of force in the first linearisation
-  static constexpr double estimate_safety = 1.75;        // factor on the estimate after one linearisation
-  static constexpr int most_corrections = 3;             // steps with the same compliance in a linearisation
-  static constexpr double largest_correction = 0.05;     // where more is estimated, another linearisation follows
-  static constexpr double violation = 1e-5;              // allowed penetration, relative to the deepest push
-  static constexpr double coarse_error = 0.1;            // of a force, that is flagged
+  static constexpr int maximum_rounds = 12;            // solutions of the contact problem per tick
+  static constexpr int added_per_round = 16;           // rows, those of deepest penetration
+  static constexpr double unsettled = 0.05;            // relative change of force that is left and is flagged
+  static constexpr double growing = 0.005;             // the same where a change is larger than the one before
+  static constexpr double first_change_safety = 10.0;  // factor on the change of force in the first linearisation
+  static constexpr double estimate_safety = 1.75;      // factor on the estimate after one linearisation
+  static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
+  static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
+  static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest push
+  static constexpr double coarse_error = 0.1;          // of a force, that is flagged
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);

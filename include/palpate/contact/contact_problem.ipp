@@ -244,7 +244,8 @@ PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std
     for (std::size_t a = 0; a < 3; ++a)
       if (c.weights[a] > 0.0 && surface.goes_on(c.vertices[a], c.normal)) beside -= c.weights[a];
     const Candidate& point = rows_.candidate(i);
-    const double length = surface.facet_length(point.triangle), spacing = rows_.has_area(i) ? std::sqrt(point.area) : 0.0;
+    const double length = surface.facet_length(point.triangle),
+                 spacing = rows_.has_area(i) ? std::sqrt(point.area) : 0.0;
     if (beside < 1.0 && beside * length <= std::max(1e-9 * length, spacing)) on_rim += c.force;
   }
   return all > 0.0 ? on_rim / all : 0.0;
@@ -346,14 +347,15 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
     const double length = surface.facet_length(c.triangle);
-    const bool has_too_few = few && length > ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing * tool.radius;
+    const bool has_too_few =
+        few && length > ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing * tool.radius;
     if (has_too_few || (!rows_.is_known(i) && length > longest)) on_coarse += c.force;
   }
   return on_coarse > most * all;
 }
 
-/// What a contact of so few points may be in error, relative to the force: measured with spheres on a half-space. Points
-/// without half-space have no area, and stand for themselves.
+/// What a contact of so few points may be in error, relative to the force: measured with spheres on a half-space.
+/// Points without half-space have no area, and stand for themselves.
 PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexcept {
   constexpr double of_one = 0.25;
   int points = 0;

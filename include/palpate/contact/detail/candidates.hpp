@@ -79,8 +79,8 @@ class Candidates {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
 
-  /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs more
-  /// than that, and returns the bound.
+  /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs
+  /// more than that, and returns the bound.
   double raise_least_gap(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                          Candidate& c) const noexcept;
   /// Evaluates a candidate at the present deformation and proxy.
@@ -88,8 +88,8 @@ class Candidates {
                 Candidate& c) noexcept;
   /// Deformed position of a candidate's point [m].
   Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
-  /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs as
-  /// little [m].
+  /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs
+  /// as little [m].
   double longest_move(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                       const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.

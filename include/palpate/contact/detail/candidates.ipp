@@ -123,7 +123,8 @@ PALPATE_INLINE void Candidates::begin_tick(const ContactSurface& surface, std::s
 }
 
 PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& tool) noexcept {
-  travel_[t] += (tool.proxy - proxy_[t]).norm() + (tool.outward - outward_[t]).norm() * tool.radius + std::abs(std::max(0.0, tool.entered) - entered_[t]);
+  travel_[t] += (tool.proxy - proxy_[t]).norm() + (tool.outward - outward_[t]).norm() * tool.radius +
+                std::abs(std::max(0.0, tool.entered) - entered_[t]);
   proxy_[t] = tool.proxy;
   outward_[t] = tool.outward;
   entered_[t] = std::max(0.0, tool.entered);

@@ -203,8 +203,9 @@ inline double Candidates::known_gap(int tool, int sample) const noexcept {
 
 /// Adds a point with its least gap to the list if it is near and not there yet. Far points are not evaluated: their
 /// displacement would cost more than the rest of the search, and the reach of the surface is a bound for it, unless
-/// that is large: then the displacement of the vertices gives a bound, or all of it. Points of the present list are not evaluated either when the next one is built in parts: they keep
-/// their bounds. When the list is full, it is complete only up to the nearest point left out. Points that press stay.
+/// that is large: then the displacement of the vertices gives a bound, or all of it. Points of the present list are not
+/// evaluated either when the next one is built in parts: they keep their bounds. When the list is full, it is complete
+/// only up to the nearest point left out. Points that press stay.
 PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const ContactTool& tool, Candidate& c,
                                          const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   CandidateList& points = list.points;

@@ -5,16 +5,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// From the closest point of a deformed triangle to a position. `subfacet` adds the dents of contact points at vertices;
-/// null: none.
+/// From the closest point of a deformed triangle to a position. `subfacet` adds the dents of contact points at
+/// vertices; null: none.
 struct TriangleOffset {
   Vector3 offset;           ///< [m]
   Vector3 normal;           ///< of the triangle, outward, not unit
   TriangleFeature feature;  ///< on which the closest point is
 };
 TriangleOffset offset_from(const TissueView& tissue, SurfaceDisplacement& displacement,
-                           const SubfacetCompliance* subfacet, int triangle,
-                           const Vector3& position) noexcept;
+                           const SubfacetCompliance* subfacet, int triangle, const Vector3& position) noexcept;
 
 /// The closest point of the deformed surface, and on which side of it the position is; on the rim: outside. Visits the
 /// triangles whose resting boxes come within `reach` [m], and computes the displacement of their vertices. No

@@ -12,7 +12,8 @@ PALPATE_INLINE TriangleOffset offset_from(const TissueView& tissue, SurfaceDispl
                                           const SubfacetCompliance* subfacet, int triangle,
                                           const Vector3& position) noexcept {
   const Triangle& v = tissue.contact_surface().triangle(triangle);
-  const Vector3 a = displacement.dented_position(tissue, subfacet, v[0]), b = displacement.dented_position(tissue, subfacet, v[1]),
+  const Vector3 a = displacement.dented_position(tissue, subfacet, v[0]),
+                b = displacement.dented_position(tissue, subfacet, v[1]),
                 c = displacement.dented_position(tissue, subfacet, v[2]);
   const TrianglePoint on = closest_point(position, a, b, c);
   return {position - on.weights[0] * a - on.weights[1] * b - on.weights[2] * c, cross(b - a, c - a), on.feature};

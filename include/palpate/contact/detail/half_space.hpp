@@ -75,32 +75,6 @@ PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const H
   return half_space_support((p.position - q.position).norm() / (p.length + q.length), p.normal.dot(q.normal));
 }
 
-/// half_space_support and half_space_compliance times a force at q, added to the displacement `u` of p [m]; nothing for
-/// points at the same place. Written out, because ticks after a jump spend most of their time here: about 90 flops, a
-/// root and a division, and 10 flops for points without support.
-PALPATE_ALWAYS_INLINE void add_supported_displacement(const HalfSpacePoint& p, const HalfSpacePoint& q,
-                                                      const Vector3& force, Vector3& u) noexcept {
-  constexpr double rounding = 1e-9;
-  const double *const x = p.position.data(), *const y = q.position.data(), *const f = force.data();
-  const double *const m = p.normal.data(), *const n = q.normal.data();
-  const double d0 = x[0] - y[0], d1 = x[1] - y[1], d2 = x[2] - y[2];
-  const double squared = d0 * d0 + d1 * d1 + d2 * d2, edges = p.length + q.length;
-  if (!(squared < 4.0 * edges * edges && squared > rounding * rounding * edges * edges)) return;
-  const double distance = std::sqrt(squared), per_length = 1.0 / distance;
-  const double support = half_space_support(distance / edges, m[0] * n[0] + m[1] * n[1] + m[2] * n[2]);
-  if (!(support > 0.0)) return;
-  const double n0 = 0.5 * (m[0] + n[0]), n1 = 0.5 * (m[1] + n[1]), n2 = 0.5 * (m[2] + n[2]);
-  const double nu = 0.5 * (p.poisson_ratio + q.poisson_ratio), scale = support * p.root * q.root * per_length;
-  const double across = scale * (1.0 - 2.0 * nu) * per_length, along = d0 * f[0] + d1 * f[1] + d2 * f[2];
-  const double of_d =
-      2.0 * scale * nu * per_length * per_length * along + across * (n0 * f[0] + n1 * f[1] + n2 * f[2]);
-  const double of_force = 2.0 * scale * (1.0 - nu), of_n = across * along;
-  double* const sum = u.data();
-  sum[0] += of_force * f[0] + of_d * d0 - of_n * n0;
-  sum[1] += of_force * f[1] + of_d * d1 - of_n * n1;
-  sum[2] += of_force * f[2] + of_d * d2 - of_n * n2;
-}
-
 inline bool is_same_place(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
   constexpr double rounding = 1e-9;
   return p.body == q.body && !((p.position - q.position).norm() > rounding * (p.length + q.length));

@@ -29,11 +29,12 @@ class PointCompliance {
 
   /// The half-space at the point in a slot.
   const HalfSpacePoint& half_space_point(int slot) const noexcept { return point_[at(slot)]; }
-  /// Whether the compliance between the points in two slots needs the self compliance: they are one, or at the two sides
-  /// of a cut.
+  /// Whether the compliance between the points in two slots needs the self compliance: they are one, or at the two
+  /// sides of a cut.
   bool have_same_place(const Candidates& points, int p, int q) const noexcept {
     if (p != q && !(points.subfacet() != nullptr && points.subfacet()->has_copies())) return false;
-    return point_[at(p)].is_known() && (p == q || (point_[at(q)].is_known() && is_same_place(point_[at(p)], point_[at(q)])));
+    return point_[at(p)].is_known() &&
+           (p == q || (point_[at(q)].is_known() && is_same_place(point_[at(p)], point_[at(q)])));
   }
   /// TissueView::rotation_at of that point.
   const Matrix3& rotation(int slot) const noexcept { return rotation_[at(slot)]; }

@@ -36,7 +36,8 @@ struct HalfSpaceMarks {
 ///
 /// A point between vertices is a HalfSpacePoint with the weighted means of root, Poisson ratio and length, and the
 /// normal of its facets. Vertices without a solution have root 0 and no blocks, so that their points keep the
-/// compliance C. So have vertices that are fixed along the normal, which do not keep their neighbours' points from theirs.
+/// compliance C. So have vertices that are fixed along the normal, which do not keep their neighbours' points from
+/// theirs.
 class ProjectedHalfSpace {
  public:
   /// Rows of the lower half, the columns of each ascending.

@@ -154,8 +154,7 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
 /// The dents of both are linear in their forces: their blended sum is a bound for the largest.
 PALPATE_INLINE void SurfaceDisplacement::blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
                                                const ContactSamples& samples) noexcept {
-  largest_dent_ =
-      part * largest_dent(tissue, samples) + (1.0 - part) * before.largest_dent(tissue, samples);
+  largest_dent_ = part * largest_dent(tissue, samples) + (1.0 - part) * before.largest_dent(tissue, samples);
   dent_stamp_ = ++generation_;
   blend_loads(before, part, samples);
   for (int i = 0; i < count_; ++i) {

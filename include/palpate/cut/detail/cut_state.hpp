@@ -148,9 +148,9 @@ class CutState {
     for (const NodeId node : touchable_.nodes())
       if (topology_.origin_of(node) == node) touched.push_back(node);
     const std::span<const std::uint8_t> constrained = topology_.constrained();
-    return std::make_shared<SubfacetCompliance>(
-        project_half_space(whole, extract_boundary<E>(whole.mesh), touched,
-                           constrained.first(whole.mesh.positions.size()), nullptr, limits_));
+    return std::make_shared<SubfacetCompliance>(project_half_space(whole, extract_boundary<E>(whole.mesh), touched,
+                                                                   constrained.first(whole.mesh.positions.size()),
+                                                                   nullptr, limits_));
   }
   /// Finds how far the nodes that may be touched are from a constrained one, in the body before any cut.
   void find_supports() {
@@ -231,9 +231,9 @@ class CutState {
   std::vector<double> support_;   // per node before any cut, distance to a constrained one [m]; infinity: not touched
   CutReport report_;
   std::shared_ptr<const SubfacetCompliance> half_space_;  // before any cut
-  std::shared_ptr<CutContact> contact_;  // of the last cut
-  std::vector<double> bound_;            // of the last view
-  std::uint64_t cut_ = 0;                // number of the last cut
+  std::shared_ptr<CutContact> contact_;                   // of the last cut
+  std::vector<double> bound_;                             // of the last view
+  std::uint64_t cut_ = 0;                                 // number of the last cut
 };
 
 }}  // namespace palpate
