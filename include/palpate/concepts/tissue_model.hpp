@@ -168,11 +168,11 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// - `report_slow(slow)` -> void: reports whether a BackgroundWorker cannot keep up.
 /// - `report_failed(failed)` -> void: reports whether a BackgroundWorker has stopped because `background_work` threw;
 /// `begin_tick` then reports stalled_tissue.
-/// A tissue may also have `claim()`, if only one servo at a time can use it (TissueClaim), `notes() const`, sentences for
-/// the report of a session as std::vector<std::string>, and `refuses_suspicious_units() const`: whether tools that look
-/// as if they were given in millimetres are refused.
-/// All hooks but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two calls of
-/// `begin_tick` the surface stays at the same place in memory.
+/// A tissue may also have `claim()`, if only one servo at a time can use it (TissueClaim), `notes() const`, sentences
+/// for the report of a session as std::vector<std::string>, and `refuses_suspicious_units() const`: whether tools that
+/// look as if they were given in millimetres are refused.
+/// All hooks but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two
+/// calls of `begin_tick` the surface stays at the same place in memory.
 template <class T>
 concept TissueModel = detail::HasSurface<T> && detail::HasCompliance<T> && detail::HasComplianceScales<T> &&
                       !detail::HasOutOfDateScale<T> && detail::HasHooks<T>;
