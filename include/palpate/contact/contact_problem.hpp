@@ -63,8 +63,8 @@ class ContactProblem {
   /// The share of a tool's contact force, 0 to 1, at points whose facets face away from it, at rest and deformed: they
   /// push it out of the body on the wrong side. Grasped points do not count. No allocation; O(contacts).
   double force_from_behind(const TissueView& tissue, std::size_t t) noexcept;
-  /// The share at points of the rim beyond which the body goes on and cannot be touched, or beside it within their
-  /// spacing: of a tool over the rim, a part of the force is missing. No allocation; O(contacts).
+  /// The share at points of the rim beyond which the body goes on and cannot be touched, or within half of their
+  /// spacing of it: of a tool over the rim, a part of the force is missing. No allocation; O(contacts).
   double force_on_rim(const TissueView& tissue, std::size_t t) const noexcept;
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
   double indentation(std::size_t t, const ContactTool& tool) const noexcept;

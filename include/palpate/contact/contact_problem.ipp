@@ -180,7 +180,7 @@ PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
       continue;
     }
     const auto presses = [&](const Contact& c) { return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0; };
-    constexpr double common = 0.5;  // part of the forces
+    constexpr double common = 0.25;  // part of the forces
     Vector3 sum = Vector3::Zero();
     double all = 0.0;
     for (const Contact& c : rows_.contacts())
@@ -246,7 +246,7 @@ PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std
     const Candidate& point = rows_.candidate(i);
     const double length = surface.facet_length(point.triangle),
                  spacing = rows_.has_area(i) ? std::sqrt(point.area) : 0.0;
-    if (beside < 1.0 && beside * length <= std::max(1e-9 * length, spacing)) on_rim += c.force;
+    if (beside < 1.0 && beside * length <= std::max(1e-9 * length, 0.5 * spacing)) on_rim += c.force;
   }
   return all > 0.0 ? on_rim / all : 0.0;
 }

@@ -94,9 +94,7 @@ PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size
   if (!has_areas_ && left_out_[tool] > 0) return 1.0;
   if (!has_areas_) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
   const double wanted = level_for(samples, tool, area) - level_[tool];
-  if (left_out_[tool] > 0) return std::max(1.0, wanted);
-  const bool is_crowded = 4 * used > 3 * share_[tool];
-  return std::clamp(wanted, -longest_step, is_crowded ? 1.0 : longest_step);
+  return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
 }
 
 PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,

@@ -87,10 +87,11 @@ PALPATE_INLINE void HalfSpaceTable::project() {
   const int threads = limits_.threads.threads();
   const ColumnBlocks columns(source_.stiffness[0].matrix->pattern());
   std::vector<std::unique_ptr<PatchProjection>> workers(static_cast<std::size_t>(threads));
+  constexpr Index least = 16;  // vertices for a thread: they take milliseconds
   const Index turn = Index{256} * threads;
   for (Index first = 0; first < count; first += turn) {
     limits_.advance("compliance", static_cast<double>(first) / static_cast<double>(count));
-    thread_ranges(std::min(turn, count - first), 1, limits_.threads, [&](int thread, Index begin, Index end) {
+    thread_ranges(std::min(turn, count - first), least, limits_.threads, [&](int thread, Index begin, Index end) {
       auto& worker = workers[static_cast<std::size_t>(thread)];
       if (!worker) worker = std::make_unique<PatchProjection>(source_, columns);
       for (Index v = first + begin; v < first + end; ++v) project_vertex(*worker, static_cast<int>(v));
