@@ -18,6 +18,6 @@ int main() {
   }
   std::printf("%.6f %.6f %.6f N, touchable vertices: %lld\n", force[0], force[1], force[2],
               static_cast<long long>(tissue->report().touchable_vertices));
-  const bool right = force.allFinite() && force[2] > 0.05 && force[2] < 1.0 && force.head<2>().norm() < 0.1 * force[2];
+  const bool right = force.allFinite() && force[2] > 0.03 && force[2] < 1.0 && force.head<2>().norm() < 0.1 * force[2];
   return right && tissue->report().touchable_vertices == 25 ? 0 : 1;
 }

@@ -99,7 +99,10 @@ struct ContactTool {
   Vector3 middle() const noexcept;
   /// Radius of that sphere [m].
   double core_radius() const noexcept {
-    return hull != nullptr ? hull->radius() : half_length > 0.0 ? half_length : std::max(0.0, entered);
+    if (hull != nullptr) return hull->radius();
+    return half_length > 0.0         ? half_length
+           : entered > -0.5 * radius ? 0.2 * radius + 1.1 * std::max(0.0, entered)
+                                     : 0.0;
   }
   /// Upper bound of the path of the device since the last tick, at the end that moved most [m].
   double path_length() const noexcept;

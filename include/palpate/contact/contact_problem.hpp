@@ -106,7 +106,7 @@ class ContactProblem {
   void grasp(const TissueView& tissue, Tools tools) noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
-  inline void set_area(const ContactTool& tool, Candidate& c) const noexcept;
+  inline void set_area(Candidate& c) const noexcept;
   static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);
   void start_levels(const TissueView& tissue, Tools tools) noexcept;
   void prefetch(const TissueView& tissue) noexcept;
@@ -140,7 +140,7 @@ class ContactProblem {
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(const TissueView& tissue, Tools tools) noexcept;
-  void set_outward(Tools tools) noexcept;
+  void set_outward(const ContactSurface& surface, Tools tools) noexcept;
   void note_forces_of_lifted(Tools tools) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;

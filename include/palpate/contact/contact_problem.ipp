@@ -86,11 +86,9 @@ PALPATE_INLINE void ContactProblem::start_levels(const TissueView& tissue, Tools
     if (begins[t]) levels_.start(candidates_.samples(), static_cast<int>(t), area[t]);
 }
 
-/// A grasped point moves with a part of the surface as large as the tool's jaws.
-inline void ContactProblem::set_area(const ContactTool& tool, Candidate& c) const noexcept {
-  constexpr double of_jaws = 0.8;  // square radii
-  c.area =
-      c.grasped ? of_jaws * tool.radius * tool.radius : candidates_.samples().area(c.sample, levels_.level(c.tool));
+/// A grasped point keeps the area that it had when it was grasped: its force does not change then.
+inline void ContactProblem::set_area(Candidate& c) const noexcept {
+  if (!c.grasped) c.area = candidates_.samples().area(c.sample, levels_.level(c.tool));
 }
 
 inline bool ContactProblem::may_have_row(const Candidate& c) const noexcept {
@@ -124,7 +122,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rounds_left_ = maximum_rounds;
   status |= tissue.require_columns({});  // before the revision is read
   note_forces_of_lifted(tools);
-  set_outward(tools);
+  set_outward(tissue.contact_surface(), tools);
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
@@ -169,8 +167,9 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 }
 
 /// The direction is the mean normal of the contacts while the centre is above all of them. A sphere between two parts
-/// that push against each other came from neither.
-PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
+/// that push against each other came from neither. It has entered material that faces that direction at rest, not a
+/// wall beside it.
+PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
     if (tool.half_length > 0.0) continue;
@@ -188,8 +187,12 @@ PALPATE_INLINE void ContactProblem::set_outward(Tools tools) noexcept {
     const bool is_shallow = tool.outward.squaredNorm() == 0.0 || tool.entered < -0.5 * tool.radius;
     if (is_shallow && all > 0.0) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
     tool.entered = -infinity;
-    for (const Contact& c : rows_.contacts())
-      if (presses(c)) tool.entered = std::max(tool.entered, tool.outward.dot(c.rest - tool.proxy));
+    constexpr double facing = 0.5;
+    for (int i = 0; i < rows_.count(); ++i) {
+      const Contact& c = rows_.contacts()[at(i)];
+      if (presses(c) && surface.normal(rows_.candidate(i).triangle).dot(tool.outward) > facing)
+        tool.entered = std::max(tool.entered, tool.outward.dot(c.rest - tool.proxy));
+    }
   }
 }
 
@@ -492,13 +495,15 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
     if (!tool.active || !tool.grasping) g.release();
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
-    const Candidate* nearest = nullptr;
+    Candidate* nearest = nullptr;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
     }
     if (nearest == nullptr) continue;
+    nearest->area = std::max(nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)));
+    if (!(nearest->area > 0.0)) nearest->area = std::pow(PointLevels::first_spacing * tool.radius, 2);
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     if (parameters_.grasp_radius > 0.0 && most > 2)
       g.take_pad(tissue, candidates_, displacement_, *nearest, tool, parameters_.grasp_radius, most);
@@ -527,10 +532,8 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
   predict_normals(iteration);
   rows_.clear();
   for (std::size_t t = 0; t < tools.size(); ++t)
-    for (Candidate& c : grasps_[t].rows()) {
-      set_area(tools[t], c);
-      rows_.add(tissue, candidates_, c);
-    }
+    for (Candidate& c : grasps_[t].rows())
+      if (rows_.count() < rows_.capacity()) rows_.add(tissue, candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     if (rows_.count() < rows_.capacity() && !is_grasped(c))
@@ -587,7 +590,7 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const ContactTool& tool = tools[at(c.tool)];
-    set_area(tool, c);
+    set_area(c);
     if (arrived_) {
       candidates_.place(c, c.point, tool);
     } else {
@@ -667,7 +670,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     Candidate& c = *violated_[at(i)].candidate;
     if (own[at(c.tool)] >= levels_.share(c.tool)) continue;
     ++own[at(c.tool)];
-    set_area(tools[at(c.tool)], c);
+    set_area(c);
     rows_.inherit_friction(tools[at(c.tool)], c);
     rows_.add(tissue, candidates_, c);
   }

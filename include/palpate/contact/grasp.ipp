@@ -5,6 +5,7 @@
 #include <palpate/contact/grasp.hpp>
 
 #include <algorithm>
+#include <numbers>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -74,8 +75,10 @@ PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candid
   const ContactSurface& surface = tissue.contact_surface();
   const ContactSample& middle = candidates.sample_of(point);
   const detail::PadSearch near(surface, middle.vertices, Candidates::rest(surface, middle), radius);
-  for (int i = 0; i < std::min({near.count(), most, most_points}); ++i) {
+  const int points = std::min({near.count(), most, most_points});
+  for (int i = 0; i < points; ++i) {
     Candidate c = point;
+    c.area = std::numbers::pi * radius * radius / points;
     c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
     if (c.sample < 0) continue;
     c.triangle = surface.triangles_at(near.vertex(i)).front();

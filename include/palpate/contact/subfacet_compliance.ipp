@@ -29,15 +29,17 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
   int number = 0;
   for (const Body& body : bodies) {
     const int before = vertex_count();
+    int last = number;  // a body may be a group itself
     for (int v = 0; v < body.vertices; ++v) {
       HalfSpacePoint& p = vertices_.emplace_back(body.own != nullptr ? body.own->vertex(v) : HalfSpacePoint{});
-      p.body = number;
+      p.body += number;
+      last = std::max(last, p.body);
       for (const Block& block : body.own != nullptr ? body.own->blocks(v) : std::span<const Block>{})
         blocks_.push_back({block.vertex + before, block.shown});
       first_.push_back(static_cast<int>(blocks_.size()));
     }
     has_copies_ = has_copies_ || (body.own != nullptr && body.own->has_copies_);
-    ++number;
+    number = last + 1;
   }
 }
 

@@ -103,7 +103,7 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
 
 PALPATE_INLINE bool Candidates::move(Candidate& c, const ContactSamples& before,
                                      const ContactSurface& surface) const noexcept {
-  const int level = std::min(level_[static_cast<std::size_t>(c.tool)], samples_.levels() - 1);
+  const int level = c.grasped ? 0 : std::min(level_[static_cast<std::size_t>(c.tool)], samples_.levels() - 1);
   c.sample = samples_.nearest(surface, before[c.sample], level);
   if (c.sample < 0) return false;
   c.triangle = triangle_of(surface, c.sample);

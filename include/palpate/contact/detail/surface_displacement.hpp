@@ -34,6 +34,7 @@ class SurfaceDisplacement {
   void move_to(SurfaceDisplacement& fresh) noexcept;
   void clear() noexcept {
     count_ = load_count_ = 0;
+    pulls_ = false;
     ++generation_;
   }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
@@ -63,9 +64,10 @@ class SurfaceDisplacement {
                    const HalfSpacePoint& point, int number) noexcept;
   /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
   /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken, or a quarter of the tool's radius. O(loads) after the forces have changed, O(1) otherwise.
+  /// taken, or a quarter of the tool's radius. Infinite where a force pulls outward. O(loads) after the forces have
+  /// changed, O(1) otherwise.
   double largest_bulge(const TissueView& tissue, const ContactSamples& samples, double radius) noexcept {
-    return std::min(0.5 * largest_dent(tissue, samples), 0.25 * radius);
+    return pulls_ ? infinity : std::min(0.5 * largest_dent(tissue, samples), 0.25 * radius);
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -107,6 +109,7 @@ class SurfaceDisplacement {
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
   double largest_dent_ = 0.0;
+  bool pulls_ = false;  // a load is directed outward
 };
 
 }}  // namespace palpate

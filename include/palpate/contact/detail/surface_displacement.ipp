@@ -58,6 +58,7 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
 PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
   if (load_count_ == static_cast<int>(loads_.size())) return;
   half_space_.set(load_count_, load.point, load.force);
+  pulls_ = pulls_ || load.force.dot(load.point.normal) > 0.0;
   loads_[static_cast<std::size_t>(load_count_++)] = load;
   for (std::size_t a = 0; a < 3; ++a) {
     if (sample.weights[a] == 0.0) continue;
@@ -87,7 +88,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfa
   half_space_.add_displacement(load_count_, point, u);
   for (int i = 0; i < load_count_; ++i) {
     const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-    if (load.sample == number || (number < 0 && is_same_place(point, load.point)))
+    if (load.sample == number || ((number < 0 || subfacet.has_copies()) && is_same_place(point, load.point)))
       u.noalias() += half_space_self_compliance(point, load.area) * load.force;
   }
   return u;
