@@ -1,14 +1,20 @@
 // A tool that is inside the tissue: its force is zero or wrong, and flagged.
 #include "contact/servo_session.hpp"
 
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/io/read_mesh.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "catch.hpp"
+
+#include <Eigen/Geometry>
 
 using namespace palpate;
 
@@ -115,6 +121,42 @@ TEST_CASE("a jump deep into the tissue is flagged where the tool is not pushed b
     CHECK((push > 0.1 || sphere.last.has(StatusFlag::lost_contact) || sphere.last.has(StatusFlag::reacquired) ||
            sphere.last.has(StatusFlag::solver_not_converged) || sphere.last.has(StatusFlag::large_displacement)));
   }
+}
+
+TEST_CASE("a sphere on a floor that touches a wall is pushed by both as by each alone", "[haptic][servo][passed]") {
+  using Block = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+  const double side = 20e-3, height = 10e-3, radius = 4e-3, depth = 0.5e-3;
+  const auto made = [&] {
+    return Block(box_tet4({side, side, height}, {10, 10, 5}, BoxSplit::five_mirrored, {0.0, 0.0, -height}),
+                 Scene().fix("z0").touch("z1"), LinearElastic{.youngs_modulus = 10e3, .poisson_ratio = 0.45});
+  };
+  Block floor = made(), wall = made();
+  Eigen::Isometry3d pose(Eigen::Translation3d(side, 0.0, 0.0));
+  pose.rotate(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vector3::UnitY()));  // its z-axis is -x
+  wall.set_pose(pose);
+  TissueGroup both(floor, wall);
+  ServoOptions options{.coupling_stiffness = infinity};
+  options.force_limits = test::open_gate();
+  HapticServo corner(both, SphereTool{.radius = radius}, options),
+      on_floor(floor, SphereTool{.radius = radius}, options), at_wall(wall, SphereTool{.radius = radius}, options);
+  const auto tick = [&](HapticServo& servo, double time, const Vector3& position) {
+    ToolState state;
+    state.time = time;
+    state.position = position;
+    servo.tick(state);
+    return Vector3(servo.contact_force());
+  };
+  double largest = 0.0;
+  for (int i = 0; i <= 200; ++i) {  // down, then to the wall
+    const double down = depth * std::min(1.0, i / 100.0), aside = std::max(0.0, i - 100.0) * 8e-6 - 0.3e-3;
+    const Vector3 position(side - radius + aside, 0.5 * side, radius - down);
+    const Vector3 force = tick(corner, 1e-3 * i, position);
+    const Vector3 sum = tick(on_floor, 1e-3 * i, position) + tick(at_wall, 1e-3 * i, position);
+    CAPTURE(i, force.transpose(), sum.transpose());
+    CHECK((force - sum).norm() <= 0.07 * sum.norm() + 1e-6);
+    largest = std::max(largest, -force[0]);
+  }
+  CHECK(largest > 1e-3);
 }
 
 TEST_CASE("a tool that was inside and leaves on the way it came is not flagged any more", "[haptic][servo][passed]") {

@@ -184,8 +184,9 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
     double all = 0.0;
     for (const Contact& c : rows_.contacts())
       if (presses(c)) sum += c.force * c.normal, all += c.force;
+    if (all == 0.0) continue;  // the surface was cut
     const bool is_shallow = tool.outward.squaredNorm() == 0.0 || tool.entered < -0.5 * tool.radius;
-    if (is_shallow && all > 0.0) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
+    if (is_shallow) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
     tool.entered = -infinity;
     constexpr double facing = 0.5;
     for (int i = 0; i < rows_.count(); ++i) {
@@ -466,6 +467,14 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   displacement_.move_to(fresh.displacement_);
   start_.move_to(fresh.start_);
   candidates_.move_to(fresh.candidates_, surface);
+  const auto renumber = [&](PointLoad& load) {
+    load.sample = candidates_.samples().nearest(surface, fresh.candidates_.samples()[load.sample], 0);
+    if (load.sample < 0) return false;
+    load.point = candidates_.half_space_point(load.sample);
+    return load.point.is_known();
+  };
+  displacement_.renumber_loads(candidates_.samples(), renumber);
+  start_.renumber_loads(candidates_.samples(), renumber);
   for (Grasp& g : grasps_) g.move_to(candidates_, fresh.candidates_.samples(), surface);
   rows_.move_to(fresh.rows_);
   pressing_count_ = violated_count_ = 0;

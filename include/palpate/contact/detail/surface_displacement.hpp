@@ -5,6 +5,7 @@
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -30,7 +31,7 @@ class SurfaceDisplacement {
   /// Clears cached displacements when the tissue's compliance has changed since the last tick.
   void begin_tick(std::uint64_t revision) noexcept;
   /// Continues on a surface with the same vertex numbers and possibly more or fewer, for which `fresh` was constructed.
-  /// Forces on vertices that are gone are dropped. No allocation.
+  /// Forces on vertices that are gone are dropped; loads need `renumber_loads` before anything else. No allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
   void clear() noexcept {
     count_ = load_count_ = 0;
@@ -42,6 +43,14 @@ class SurfaceDisplacement {
 
   /// Adds a force on a point that is known in a SubfacetCompliance, whose parts were added to its vertices.
   void add_load(const PointLoad& load, const ContactSample& sample) noexcept;
+
+  /// `renumber` changes the point of a load for the present surface, and returns whether it still exists there.
+  template <class Renumber>
+  void renumber_loads(const ContactSamples& samples, Renumber&& renumber) noexcept {
+    const auto all = static_cast<std::size_t>(std::exchange(load_count_, 0));
+    for (std::size_t i = 0; i < all; ++i)
+      if (PointLoad load = loads_[i]; renumber(load)) add_load(load, samples[load.sample]);
+  }
 
   bool has_loads() const noexcept { return load_count_ > 0; }
 

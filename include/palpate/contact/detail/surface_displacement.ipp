@@ -36,7 +36,6 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
   loaded_.swap(fresh.loaded_);
   shown_stamp_.swap(fresh.shown_stamp_);
   loaded_stamp_.swap(fresh.loaded_stamp_);
-  load_count_ = 0;  // samples have other numbers
   const auto end = std::remove_if(forces_.begin(), forces_.begin() + count_, [&](const VertexForce& f) {
     return static_cast<std::size_t>(f.vertex) >= displacement_.size();
   });
