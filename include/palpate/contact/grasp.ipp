@@ -78,12 +78,13 @@ PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candid
   const int points = std::min({near.count(), most, most_points});
   for (int i = 0; i < points; ++i) {
     Candidate c = point;
-    c.area = std::numbers::pi * radius * radius / points;
     c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
     if (c.sample < 0) continue;
     c.triangle = surface.triangles_at(near.vertex(i)).front();
     c.row = c.slot = -1;
     c.history = {};
+    const double length = candidates.half_space_point(c.sample).length;
+    c.area = 0.5 * std::numbers::sqrt3 * length * length;  // of a vertex: the mesh shows its displacement
     candidates.evaluate(tissue, tool, displacement, c);
     take(c, tool);
     vertices_[static_cast<std::size_t>(count_ - 1)] = near.vertex(i);
