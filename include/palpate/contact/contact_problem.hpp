@@ -104,6 +104,7 @@ class ContactProblem {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
   void grasp(const TissueView& tissue, Tools tools) noexcept;
+  void hold_pads() noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
   inline void set_area(Candidate& c) const noexcept;

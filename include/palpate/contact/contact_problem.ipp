@@ -173,7 +173,8 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
     if (tool.half_length > 0.0) continue;
-    if (tool.force.squaredNorm() == 0.0) {  // also where it restarts elsewhere
+    // Without force also where it restarts elsewhere. A tool that grasps is drawn through the tissue around it.
+    if (tool.force.squaredNorm() == 0.0 || is_holding(t)) {
       tool.outward.setZero();
       tool.entered = 0.0;
       continue;
@@ -515,10 +516,20 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
     if (!(nearest->area > 0.0)) nearest->area = std::pow(PointLevels::first_spacing * tool.radius, 2);
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     if (parameters_.grasp_radius > 0.0 && most > 2)
-      g.take_pad(tissue, candidates_, displacement_, *nearest, tool, parameters_.grasp_radius, most);
+      g.take_pad(tissue, candidates_, displacement_, *nearest, tool, parameters_.grasp_radius, most),
+          rows_.forget_compliance();
     else
       g.take(*nearest, tool);
   }
+  hold_pads();
+}
+
+PALPATE_INLINE void ContactProblem::hold_pads() noexcept {
+  std::array<int, Candidates::most_held> vertices;
+  std::size_t count = 0;
+  for (const Grasp& g : grasps_)
+    for (const int v : g.pad()) vertices[count++] = v;
+  if (candidates_.hold({vertices.data(), count})) rows_.forget_compliance();
 }
 
 /// Passes the vertices near the spheres to a tissue that prefetches.

@@ -9,15 +9,19 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// keeps its place on the tool. Points that the group moves have no unilateral row in addition.
 class Grasp {
  public:
-  static constexpr double reach = 0.1;     ///< largest gap, in radii, of a point that can be grasped
-  static constexpr int most_points = 8;    ///< of a pad, the nearest ones
-  static constexpr int most_visited = 64;  ///< vertices in the search for them
+  static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
+  static constexpr int most_points = Candidates::most_held / maximum_tools;  ///< of a pad, the nearest ones
+  static constexpr int most_visited = 64;                                    ///< vertices in the search for them
 
   bool requested = false;  ///< since the tool began to grasp
 
   bool holds_any() const noexcept { return count_ > 0; }
+  /// The vertices of a pad; none of a point within a triangle.
+  std::span<const int> pad() const noexcept {
+    return {vertices_.data(), count_ > 0 && vertices_[0] >= 0 ? static_cast<std::size_t>(count_) : 0};
+  }
   std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
-  /// Whether a point is grasped, or lies between grasped vertices.
+  /// Whether a point is grasped, or moves more with grasped vertices than with others: its own row would be stiff.
   bool holds(const Candidate& c, const ContactSample& sample) const noexcept;
 
   /// Grasps this point at its present place on the tool.

@@ -5,7 +5,6 @@
 #include <palpate/contact/grasp.hpp>
 
 #include <algorithm>
-#include <numbers>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -53,9 +52,10 @@ PALPATE_INLINE bool Grasp::holds(const Candidate& c, const ContactSample& sample
     return std::find(vertices_.begin(), vertices_.begin() + count_, vertex) != vertices_.begin() + count_;
   };
   if (vertices_[0] < 0) return c.sample == rows_[0].sample;
+  double moved = 0.0;
   for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] > 0.0 && !grasped(sample.vertices[a])) return false;
-  return true;
+    if (sample.weights[a] > 0.0 && grasped(sample.vertices[a])) moved += sample.weights[a];
+  return moved > 0.5;
 }
 
 PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool) noexcept {
@@ -76,6 +76,9 @@ PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candid
   const ContactSample& middle = candidates.sample_of(point);
   const detail::PadSearch near(surface, middle.vertices, Candidates::rest(surface, middle), radius);
   const int points = std::min({near.count(), most, most_points});
+  std::array<int, most_points> vertices;
+  for (int i = 0; i < points; ++i) vertices[static_cast<std::size_t>(i)] = near.vertex(i);
+  candidates.hold({vertices.data(), static_cast<std::size_t>(points)});  // the mesh stays where it is
   for (int i = 0; i < points; ++i) {
     Candidate c = point;
     c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
@@ -83,8 +86,6 @@ PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candid
     c.triangle = surface.triangles_at(near.vertex(i)).front();
     c.row = c.slot = -1;
     c.history = {};
-    const double length = candidates.half_space_point(c.sample).length;
-    c.area = 0.5 * std::numbers::sqrt3 * length * length;  // of a vertex: the mesh shows its displacement
     candidates.evaluate(tissue, tool, displacement, c);
     take(c, tool);
     vertices_[static_cast<std::size_t>(count_ - 1)] = near.vertex(i);

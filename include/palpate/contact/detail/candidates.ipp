@@ -27,7 +27,7 @@ PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<co
 
 PALPATE_INLINE void Candidates::reset() noexcept {
   list_.points.clear();
-  loaded_count_ = 0;
+  loaded_count_ = held_count_ = 0;
   search_.runs = search_.ends = false;
   list_.range.fill(0.0);
   list_.built.fill(0.0);
@@ -173,6 +173,21 @@ PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const Contact
                                          SurfaceDisplacement& displacement, Candidate& c) noexcept {
   place(c, position(tissue, displacement, c), tool);
   c.facing = faces_sphere(tissue, displacement, c);
+}
+
+PALPATE_INLINE bool Candidates::hold(std::span<const int> vertices) noexcept {
+  if (std::ranges::equal(vertices, std::span(held_.data(), static_cast<std::size_t>(held_count_)))) return false;
+  held_count_ = static_cast<int>(std::min(vertices.size(), held_.size()));
+  std::copy_n(vertices.begin(), held_count_, held_.begin());
+  return true;
+}
+
+PALPATE_INLINE bool Candidates::is_held(const ContactSample& sample) const noexcept {
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sample.weights[a] > 0.0 &&
+        std::find(held_.begin(), held_.begin() + held_count_, sample.vertices[a]) != held_.begin() + held_count_)
+      return true;
+  return false;
 }
 
 PALPATE_INLINE void Candidates::set_level(std::size_t tool, int level) noexcept {

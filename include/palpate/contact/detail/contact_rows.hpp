@@ -26,6 +26,7 @@ class ContactRows {
   /// Clears the compliance between points when the tissue's compliance has changed.
   void begin_tick(std::uint64_t compliance_revision) noexcept;
   void clear() noexcept;
+  void forget_compliance() noexcept { compliance_.forget(); }
   /// Back to the state after construction.
   void reset() noexcept;
   /// Removes all rows and continues on a surface with more vertices, for which `fresh` was constructed.
