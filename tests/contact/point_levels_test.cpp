@@ -24,9 +24,10 @@ ContactSamples plane_of_samples() {
 /// A tick in which tools press parts of a plane with these areas, in so far as they have rows.
 Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity) {
   Areas radii{};
-  for (std::size_t t = 0; t < maximum_tools; ++t)
-    if (areas[t] > 0.0) radii[t] = tip_radius;
-  levels.begin_tick(samples, radii, capacity, true, 24);
+  radii.fill(tip_radius);
+  std::array<bool, maximum_tools> near{};
+  for (std::size_t t = 0; t < maximum_tools; ++t) near[t] = areas[t] > 0.0;
+  levels.begin_tick(samples, radii, near, {capacity, 24});
   Counts used{};
   Areas pressed{};
   for (std::size_t t = 0; t < maximum_tools; ++t) {
@@ -39,7 +40,7 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
     for (int i = used[t]; i < points; ++i) levels.note_left_out(tool, 1e-3);
     pressed[t] = areas[t] * used[t] / std::max(1, points);
   }
-  levels.end_tick(samples, used, pressed);
+  levels.end_tick(samples, used, pressed, {});
   return used;
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("levels change in small steps", "[contact][levels]") {
 TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
   PointLevels levels;
-  levels.begin_tick(samples, {tip_radius}, 64, true, 24);
+  levels.begin_tick(samples, {tip_radius}, {true}, {64, 24});
   levels.start(samples, 0, 3e-5);
   const double level = levels.level(0);
   CHECK(level > 1.0);

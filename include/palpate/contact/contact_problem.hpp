@@ -103,8 +103,9 @@ class ContactProblem {
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
-  void grasp(const TissueView& tissue, Tools tools) noexcept;
-  void hold_pads() noexcept;
+  Status grasp(const TissueView& tissue, Tools tools) noexcept;
+  bool pin_pads() noexcept;
+  bool presses_beside_pad(std::size_t t) const noexcept;
   inline bool is_grasped(const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
   inline void set_area(Candidate& c) const noexcept;
@@ -114,8 +115,8 @@ class ContactProblem {
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
-  inline std::array<double, maximum_tools> radii_near(Tools tools) const noexcept;
-  void share_rows(const std::array<double, maximum_tools>& radius) noexcept;
+  inline std::array<bool, maximum_tools> are_near(Tools tools) const noexcept;
+  void share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept;
   /// The contacts of a tool on one body; their vertices are numbered in that body.
   struct BodyContacts {
     std::span<const Contact> rows;

@@ -55,18 +55,21 @@ PALPATE_INLINE ContactSamples ContactProblem::made_samples(const ContactSurface&
   return {surface, finest, std::max(finest, PointLevels::coarsest_of_mesh * radii.largest)};
 }
 
-/// Radii of the tools that have contact points near them, 0 for the others.
-inline std::array<double, maximum_tools> ContactProblem::radii_near(Tools tools) const noexcept {
-  std::array<double, maximum_tools> radius{};
-  for (std::size_t t = 0; t < tools.size(); ++t)
-    if (tools[t].active && candidates_.has_any(static_cast<int>(t))) radius[t] = tools[t].radius;
-  return radius;
+/// Whether tools have contact points near them.
+inline std::array<bool, maximum_tools> ContactProblem::are_near(Tools tools) const noexcept {
+  std::array<bool, maximum_tools> near{};
+  for (std::size_t t = 0; t < tools.size(); ++t) near[t] = tools[t].active && candidates_.has_any(static_cast<int>(t));
+  return near;
 }
 
 /// Divides the rows among these tools.
-PALPATE_INLINE void ContactProblem::share_rows(const std::array<double, maximum_tools>& radius) noexcept {
-  levels_.begin_tick(candidates_.samples(), radius, rows_.capacity(), candidates_.subfacet() != nullptr,
-                     parameters_.pressing_points);
+PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept {
+  std::array<double, maximum_tools> radius{};
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (tools[t].active) radius[t] = tools[t].radius;
+  levels_.begin_tick(
+      candidates_.samples(), radius, near,
+      {rows_.capacity(), parameters_.pressing_points, candidates_.subfacet() != nullptr, parameters_.sample_spacing});
 }
 
 /// Tools that did not press yet get the level for the part of the surface that they have entered.
@@ -127,8 +130,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
   candidates_.begin_tick(tissue.contact_surface(), tools);
-  auto near = radii_near(tools);
-  share_rows(near);
+  auto near = are_near(tools);
+  share_rows(tools, near);
   for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
@@ -140,10 +143,10 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     }
     proxies_.begin(tools, floor_);
     status |= candidates_.update(tissue, tools, displacement_);
-    if (const auto now = radii_near(tools); now != near) share_rows(near = now);
+    if (const auto now = are_near(tools); now != near) share_rows(tools, near = now);
     if (iteration == 0) {
       start_levels(tissue, tools);
-      grasp(tissue, tools);
+      status |= grasp(tissue, tools);
     }
     if (candidates_.is_new()) prefetch(tissue);
     std::swap(start_, displacement_);
@@ -157,7 +160,9 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     before = change;
   }
   rows_.stick(tools);
-  levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area());
+  std::array<int, maximum_tools> grasped{};
+  for (std::size_t t = 0; t < maximum_tools; ++t) grasped[t] = static_cast<int>(grasps_[t].rows().size());
+  levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area(), grasped);
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * rows_.largest_force_scale(tools))
@@ -411,6 +416,18 @@ PALPATE_INLINE bool ContactProblem::is_as_measured(const ContactSurface& surface
   return candidates_.subfacet() != nullptr || surface.subfacet() == nullptr;
 }
 
+/// Whether more than a tenth of the force is at points beside a pad: they have another compliance than was measured.
+PALPATE_INLINE bool ContactProblem::presses_beside_pad(std::size_t t) const noexcept {
+  constexpr double most = 0.1;
+  double all = 0.0, beside = 0.0;
+  for (const Contact& c : rows_.contacts())
+    if (c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0) {
+      all += c.force;
+      if (candidates_.depends_on_pad({c.vertices, c.weights})) beside += c.force;
+    }
+  return beside > most * all;
+}
+
 /// A sphere without force may have entered a facet between contact points.
 PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& tissue,
                                                               const ContactTool& tool) const noexcept {
@@ -449,6 +466,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
     measured = measured && coarse < infinity;
     coarse_[t] = coarse_[t] || (coarse > coarse_error && coarse < infinity);
   }
+  if (presses_beside_pad(t)) error.parts.mesh = infinity;
   if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
   coarse_[t] = coarse_[t] || presses_coarse_facets(surface, t, tool, measured);
   if (!pressed) error.parts.mesh = infinity;
@@ -497,8 +515,9 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
 }
 
 /// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.
-/// Pads leave half of the rows to points that press.
-PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
+/// Pads leave half of the rows to points that press. Where other vertices are pinned than before, points have moved.
+PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
+  std::array<bool, maximum_tools> takes_pad{};
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const ContactTool& tool = tools[t];
     Grasp& g = grasps_[t];
@@ -515,21 +534,30 @@ PALPATE_INLINE void ContactProblem::grasp(const TissueView& tissue, Tools tools)
     nearest->area = std::max(nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)));
     if (!(nearest->area > 0.0)) nearest->area = std::pow(PointLevels::first_spacing * tool.radius, 2);
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
-    if (parameters_.grasp_radius > 0.0 && most > 2)
-      g.take_pad(tissue, candidates_, displacement_, *nearest, tool, parameters_.grasp_radius, most),
-          rows_.forget_compliance();
+    takes_pad[t] = parameters_.grasp_radius > 0.0 && most > 2;
+    if (takes_pad[t])
+      g.take_pad(tissue.contact_surface(), candidates_, *nearest, tool, parameters_.grasp_radius, most);
     else
       g.take(*nearest, tool);
   }
-  hold_pads();
+  if (!pin_pads()) return {};
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (takes_pad[t]) grasps_[t].place_pad(tissue, candidates_, displacement_, tools[t]);
+  rows_.forget_compliance();
+  candidates_.forget();
+  return candidates_.update(tissue, tools, displacement_);
 }
 
-PALPATE_INLINE void ContactProblem::hold_pads() noexcept {
-  std::array<int, Candidates::most_held> vertices;
+/// Whether the vertices of all pads are others than before.
+PALPATE_INLINE bool ContactProblem::pin_pads() noexcept {
+  std::array<int, Candidates::most_pinned> vertices;
   std::size_t count = 0;
   for (const Grasp& g : grasps_)
     for (const int v : g.pad()) vertices[count++] = v;
-  if (candidates_.hold({vertices.data(), count})) rows_.forget_compliance();
+  if (!candidates_.pin({vertices.data(), count})) return false;
+  displacement_.forget();
+  start_.forget();
+  return true;
 }
 
 /// Passes the vertices near the spheres to a tissue that prefetches.
@@ -661,7 +689,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
-    if (gap > candidates_.longest_move(tissue, tool, displacement_, c)) continue;
+    if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
     gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
     if (!(gap < -allowed)) continue;
     if (is_finer)

@@ -10,8 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 class Grasp {
  public:
   static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
-  static constexpr int most_points = Candidates::most_held / maximum_tools;  ///< of a pad, the nearest ones
-  static constexpr int most_visited = 64;                                    ///< vertices in the search for them
+  static constexpr int most_points = Candidates::most_pinned / maximum_tools;  ///< of a pad, the nearest ones
+  static constexpr int most_visited = 64;                                      ///< vertices in the search for them
 
   bool requested = false;  ///< since the tool began to grasp
 
@@ -27,9 +27,12 @@ class Grasp {
   /// Grasps this point at its present place on the tool.
   void take(const Candidate& point, const ContactTool& tool) noexcept;
   /// Grasps the corners of the point's triangle and the vertices within `radius` [m] of the point along the surface, at
-  /// most `most`, the nearest ones. No allocation; bounded work.
-  void take_pad(const TissueView& tissue, Candidates& candidates, SurfaceDisplacement& displacement,
-                const Candidate& point, const ContactTool& tool, double radius, int most) noexcept;
+  /// most `most`, the nearest ones. They have no place on the tool before `place_pad`. No allocation; bounded work.
+  void take_pad(const ContactSurface& surface, const Candidates& candidates, const Candidate& point,
+                const ContactTool& tool, double radius, int most) noexcept;
+  /// Gives the vertices of the pad their present places on the tool.
+  void place_pad(const TissueView& tissue, Candidates& candidates, SurfaceDisplacement& displacement,
+                 const ContactTool& tool) noexcept;
   void release() noexcept;
   /// Continues on another surface; points whose triangles no longer exist are released.
   void move_to(const Candidates& candidates, const ContactSamples& before, const ContactSurface& surface) noexcept;

@@ -70,15 +70,11 @@ PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool)
   ++count_;
 }
 
-PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candidates, SurfaceDisplacement& displacement,
-                                    const Candidate& point, const ContactTool& tool, double radius, int most) noexcept {
-  const ContactSurface& surface = tissue.contact_surface();
+PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candidates& candidates, const Candidate& point,
+                                    const ContactTool& tool, double radius, int most) noexcept {
   const ContactSample& middle = candidates.sample_of(point);
   const detail::PadSearch near(surface, middle.vertices, Candidates::rest(surface, middle), radius);
   const int points = std::min({near.count(), most, most_points});
-  std::array<int, most_points> vertices;
-  for (int i = 0; i < points; ++i) vertices[static_cast<std::size_t>(i)] = near.vertex(i);
-  candidates.hold({vertices.data(), static_cast<std::size_t>(points)});  // the mesh stays where it is
   for (int i = 0; i < points; ++i) {
     Candidate c = point;
     c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
@@ -86,9 +82,18 @@ PALPATE_INLINE void Grasp::take_pad(const TissueView& tissue, Candidates& candid
     c.triangle = surface.triangles_at(near.vertex(i)).front();
     c.row = c.slot = -1;
     c.history = {};
-    candidates.evaluate(tissue, tool, displacement, c);
     take(c, tool);
     vertices_[static_cast<std::size_t>(count_ - 1)] = near.vertex(i);
+  }
+}
+
+PALPATE_INLINE void Grasp::place_pad(const TissueView& tissue, Candidates& candidates,
+                                     SurfaceDisplacement& displacement, const ContactTool& tool) noexcept {
+  for (Candidate& c : rows()) {
+    const Vector3 axis = c.normal;
+    candidates.evaluate(tissue, tool, displacement, c);
+    c.normal = axis;
+    c.anchor = tool.rotation.transpose() * (c.point - tool.proxy);
   }
 }
 

@@ -24,7 +24,7 @@ class Candidates {
   /// the compliance of the mesh. Allocates; for set-up.
   Candidates(ContactSamples samples, std::shared_ptr<const SubfacetCompliance> subfacet, int capacity);
 
-  static constexpr std::size_t most_held = 8 * maximum_tools;  ///< vertices of pads
+  static constexpr std::size_t most_pinned = 8 * maximum_tools;  ///< vertices of pads
 
   /// Largest number of points in the list.
   int maximum() const noexcept { return list_.points.maximum(); }
@@ -33,15 +33,18 @@ class Candidates {
   const SubfacetCompliance* subfacet() const noexcept { return subfacet_.get(); }
   /// The material point of a candidate.
   const ContactSample& sample_of(const Candidate& c) const noexcept { return samples_[c.sample]; }
-  /// As a point of a half-space. Unknown without a SubfacetCompliance, and for points that depend on a held vertex.
+  /// As a point of a half-space. Unknown without a SubfacetCompliance, and for points that depend on a pinned vertex.
   HalfSpacePoint half_space_point(int sample) const noexcept {
-    if (!subfacet_ || (held_count_ > 0 && is_held(samples_[sample]))) return {};
+    if (!subfacet_ || depends_on_pad(samples_[sample])) return {};
     return subfacet_->point(samples_[sample], samples_.normal(sample));
   }
   /// The vertices of pads that tools grasp. A pad moves the mesh: it and the points beside it have the compliance of
   /// the mesh only, so that elements are not inverted by the part of the displacement that the mesh does not show.
   /// Returns whether these are others than before.
-  bool hold(std::span<const int> vertices) noexcept;
+  bool pin(std::span<const int> vertices) noexcept;
+  bool depends_on_pad(const ContactSample& sample) const noexcept {
+    return subfacet_ && pinned_count_ > 0 && is_pinned(sample);
+  }
   /// Sets the level from which on a tool has all points.
   void set_level(std::size_t tool, int level) noexcept;
   std::span<Candidate> items() noexcept { return list_.points.items(); }
@@ -97,8 +100,7 @@ class Candidates {
   Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs
   /// as little [m].
-  double longest_move(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
-                      const Candidate& c) const noexcept;
+  double longest_move(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
@@ -127,7 +129,7 @@ class Candidates {
   inline static const Vector3& expected_position(const ContactSurface& surface, int vertex) noexcept;
   inline static Vector3 expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept;
   inline static double needed(const ContactTool& tool) noexcept;
-  bool is_held(const ContactSample& sample) const noexcept;
+  bool is_pinned(const ContactSample& sample) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
 
@@ -169,10 +171,10 @@ class Candidates {
   ContactSamples samples_;
   std::shared_ptr<const SubfacetCompliance> subfacet_;
   List list_, next_list_;
-  Search search_;                      // for the next list, or for one that is built at once
-  int leaves_ = 0;                     // visited for the list
-  std::array<int, most_held> held_{};  // vertices of pads
-  int held_count_ = 0;
+  Search search_;                          // for the next list, or for one that is built at once
+  int leaves_ = 0;                         // visited for the list
+  std::array<int, most_pinned> pinned_{};  // vertices of pads
+  int pinned_count_ = 0;
   std::vector<Candidate> loaded_;  // points of the list before that press
   int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;

@@ -27,7 +27,7 @@ PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<co
 
 PALPATE_INLINE void Candidates::reset() noexcept {
   list_.points.clear();
-  loaded_count_ = held_count_ = 0;
+  loaded_count_ = pinned_count_ = 0;
   search_.runs = search_.ends = false;
   list_.range.fill(0.0);
   list_.built.fill(0.0);
@@ -152,18 +152,18 @@ PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDis
   return place_by_vertices(tissue, displacement, sample);
 }
 
-PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, const ContactTool& tool,
-                                               SurfaceDisplacement& displacement, const Candidate& c) const noexcept {
+PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                               const Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return infinity;
   const Vector3 moved = place_by_vertices(tissue, displacement, sample_of(c)) - c.point;
-  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_, tool.radius);
+  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_);
 }
 
 PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, const ContactTool& tool,
                                                   SurfaceDisplacement& displacement, Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return -infinity;
   const double distance = tool.closest(place_by_vertices(tissue, displacement, sample_of(c))).distance;
-  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_, tool.radius));
+  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_));
   c.seen = travel(static_cast<std::size_t>(c.tool));
   c.evaluated = false;
   return c.gap;
@@ -175,17 +175,17 @@ PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const Contact
   c.facing = faces_sphere(tissue, displacement, c);
 }
 
-PALPATE_INLINE bool Candidates::hold(std::span<const int> vertices) noexcept {
-  if (std::ranges::equal(vertices, std::span(held_.data(), static_cast<std::size_t>(held_count_)))) return false;
-  held_count_ = static_cast<int>(std::min(vertices.size(), held_.size()));
-  std::copy_n(vertices.begin(), held_count_, held_.begin());
+PALPATE_INLINE bool Candidates::pin(std::span<const int> vertices) noexcept {
+  if (std::ranges::equal(vertices, std::span(pinned_.data(), static_cast<std::size_t>(pinned_count_)))) return false;
+  pinned_count_ = static_cast<int>(std::min(vertices.size(), pinned_.size()));
+  std::copy_n(vertices.begin(), pinned_count_, pinned_.begin());
   return true;
 }
 
-PALPATE_INLINE bool Candidates::is_held(const ContactSample& sample) const noexcept {
+PALPATE_INLINE bool Candidates::is_pinned(const ContactSample& sample) const noexcept {
   for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] > 0.0 &&
-        std::find(held_.begin(), held_.begin() + held_count_, sample.vertices[a]) != held_.begin() + held_count_)
+    if (sample.weights[a] > 0.0 && std::find(pinned_.begin(), pinned_.begin() + pinned_count_, sample.vertices[a]) !=
+                                       pinned_.begin() + pinned_count_)
       return true;
   return false;
 }
@@ -245,9 +245,11 @@ PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDi
     if (contains && c.normal.dot(surface.normal(t)) > 0.0) return true;
   }
   const Triangle& v = surface.triangle(c.triangle);
-  const Vector3 x0 = displacement.dented_position(tissue, subfacet_.get(), v[0]);
-  const Vector3 x1 = displacement.dented_position(tissue, subfacet_.get(), v[1]);
-  const Vector3 x2 = displacement.dented_position(tissue, subfacet_.get(), v[2]);
+  const auto place = [&](int vertex) {
+    const bool pinned = pinned_count_ > 0 && is_pinned({{vertex, vertex, vertex}, {1.0, 0.0, 0.0}});
+    return displacement.dented_position(tissue, pinned ? nullptr : subfacet_.get(), vertex);
+  };
+  const Vector3 x0 = place(v[0]), x1 = place(v[1]), x2 = place(v[2]);
   return c.normal.dot(cross(x1 - x0, x2 - x0)) > 0.0;
 }
 

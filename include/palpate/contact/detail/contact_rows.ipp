@@ -63,9 +63,9 @@ inline const Matrix3& ContactRows::between(const TissueView& tissue, const Candi
   const Matrix3& compliance = compliance_(tissue, points, c.slot, other.slot);
   if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
-  const Matrix3& rotation = compliance_.rotation(c.slot);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
-  if (tissue.rotates()) workspace = (rotation * workspace * rotation.transpose()).eval();
+  if (tissue.rotates())
+    workspace = (compliance_.rotation(c.slot) * workspace * compliance_.rotation(other.slot).transpose()).eval();
   workspace += compliance;
   return workspace;
 }
@@ -143,7 +143,7 @@ PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_by_tool() const
 
 PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_pressing() const noexcept {
   std::array<int, maximum_tools> counts{};
-  for (const Contact& row : contacts()) counts[at(row.tool)] += row.force > 0.0;
+  for (const Contact& row : contacts()) counts[at(row.tool)] += row.force > 0.0 && !row.grasped;
   return counts;
 }
 
@@ -279,7 +279,8 @@ PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidate
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
     if (const HalfSpacePoint& point = compliance_.half_space_point(c.slot); point.is_known()) {
       const Vector3 at_rest = tissue.rotates() ? Vector3(compliance_.rotation(c.slot).transpose() * total) : total;
-      displacement.add_load({c.sample, point, c.area, row.point - row.rest, -at_rest}, points.samples()[c.sample]);
+      displacement.add_load({c.sample, point, c.area, tool.radius, row.point - row.rest, -at_rest},
+                            points.samples()[c.sample]);
     }
   }
   for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;

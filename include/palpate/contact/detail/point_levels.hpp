@@ -22,18 +22,24 @@ class PointLevels {
 
   /// Back to the state after construction.
   void reset() noexcept { *this = {}; }
-  /// Divides the rows among the tools and limits their levels. `radius`: of the tools near the surface; 0 for the
-  /// others. `has_areas`: the forces depend on the areas of the points; else a tool has the finest level that fits.
-  void begin_tick(const ContactSamples& samples, const std::array<double, maximum_tools>& radius, int capacity,
-                  bool has_areas, int wanted) noexcept;
+  struct Limits {
+    int capacity = 0;       ///< rows of all tools
+    int wanted = 0;         ///< points of a press
+    bool has_areas = true;  ///< forces depend on the areas of the points; else a tool has the finest level that fits
+    double mesh_spacing = 0.0;  ///< without areas: the least distance of points, in radii
+  };
+  /// Divides the rows among the tools near the surface and limits their levels. `radius`: of all tools in use; 0 for
+  /// the others.
+  void begin_tick(const ContactSamples& samples, const std::array<double, maximum_tools>& radius,
+                  const std::array<bool, maximum_tools>& near, const Limits& limits) noexcept;
   int share(int tool) const noexcept { return share_[at(tool)]; }
-  bool has_areas() const noexcept { return has_areas_; }
+  bool has_areas() const noexcept { return limits_.has_areas; }
   double level(int tool) const noexcept { return level_[at(tool)]; }
   /// The last level that has all points of a tool.
   int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
   /// The last level that has all points that a tool has to know: without areas, points of the next finer level show how
   /// far it sinks in between its own.
-  int known(int tool) const noexcept { return has_areas_ ? first(tool) : std::max(0, first(tool) - 1); }
+  int known(int tool) const noexcept { return limits_.has_areas ? first(tool) : std::max(0, first(tool) - 1); }
   /// The level of a tool that begins to press with this area [m^2], of which parts may not press in the end.
   void start(const ContactSamples& samples, int tool, double area) noexcept;
 
@@ -43,9 +49,10 @@ class PointLevels {
   void note_skipped(int tool, double penetration) noexcept;
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
-  /// Sets the levels for the next tick. Per tool: rows with force, and the area that they stand for [m^2].
+  /// Sets the levels for the next tick. Per tool: rows that press, the area that they stand for [m^2], and rows of
+  /// grasped points.
   void end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
-                const std::array<double, maximum_tools>& area) noexcept;
+                const std::array<double, maximum_tools>& area, const std::array<int, maximum_tools>& grasped) noexcept;
   /// Penetration of the deepest point without a row [m].
   double deepest() const noexcept { return deepest_; }
 
@@ -61,8 +68,7 @@ class PointLevels {
   std::array<int, maximum_tools> share_{}, needed_{}, left_out_{}, skipped_{};
   std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{};
   double deepest_ = 0.0;
-  int capacity_ = 0, wanted_ = 0;
-  bool has_areas_ = false;
+  Limits limits_;
 };
 
 }}  // namespace palpate

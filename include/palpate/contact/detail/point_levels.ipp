@@ -11,18 +11,18 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
-                                            const std::array<double, maximum_tools>& radius, int capacity,
-                                            bool has_areas, int wanted) noexcept {
-  const std::array<double, maximum_tools> before = std::exchange(radius_, radius);
-  capacity_ = capacity;
-  has_areas_ = has_areas;
-  wanted_ = wanted;
+                                            const std::array<double, maximum_tools>& radius,
+                                            const std::array<bool, maximum_tools>& near,
+                                            const Limits& limits) noexcept {
+  limits_ = limits;
+  const bool has_areas = limits.has_areas;
   for (std::size_t t = 0; t < maximum_tools; ++t) {
+    const bool begins = !(std::exchange(radius_[t], near[t] ? radius[t] : 0.0) > 0.0);
     if (!(radius[t] > 0.0)) continue;
-    least_[t] = has_areas ? samples.level_with(finest_spacing * radius[t]) : 0.0;
-    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : 0.0;
+    least_[t] = samples.level_with((has_areas ? finest_spacing : limits.mesh_spacing) * radius[t]);
+    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : least_[t];
     most_[t] = samples.level_with((has_areas ? coarsest_spacing : coarsest_of_mesh) * radius[t]);
-    if (!(before[t] > 0.0)) level_[t] = first_[t];
+    if (begins) level_[t] = first_[t];
     level_[t] = std::clamp(level_[t], least_[t], std::max(least_[t], most_[t]));
   }
   divide();
@@ -34,7 +34,7 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
 PALPATE_INLINE void PointLevels::divide() noexcept {
   std::array<bool, maximum_tools> open{};
   for (std::size_t t = 0; t < maximum_tools; ++t) open[t] = radius_[t] > 0.0;
-  int rest = capacity_, tools = static_cast<int>(std::count(open.begin(), open.end(), true));
+  int rest = limits_.capacity, tools = static_cast<int>(std::count(open.begin(), open.end(), true));
   share_.fill(1);
   for (bool given = true; given && tools > 0;) {
     given = false;
@@ -58,7 +58,7 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
 
 /// Between two levels a tool has up to twice as many points as it would have at a level of that spacing.
 PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
-  return std::min(wanted_, std::max(1, share_[tool] / 2));
+  return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
 }
 
 /// The level at which an area has the wanted number of points, each the middle of a hexagon.
@@ -69,7 +69,8 @@ PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std:
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
-  if (has_areas_ && area > 0.0) level_[at(tool)] = std::max(first_[at(tool)], level_for(samples, at(tool), area));
+  if (limits_.has_areas && area > 0.0)
+    level_[at(tool)] = std::max(first_[at(tool)], level_for(samples, at(tool), area));
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -91,15 +92,16 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
 /// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
 PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size_t tool, int used,
                                         double area) const noexcept {
-  if (!has_areas_ && left_out_[tool] > 0) return 1.0;
-  if (!has_areas_) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
+  if (!limits_.has_areas && left_out_[tool] > 0) return 1.0;
+  if (!limits_.has_areas) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
   const double wanted = level_for(samples, tool, area) - level_[tool];
   return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
 }
 
 PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
-                                          const std::array<double, maximum_tools>& area) noexcept {
-  for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t];
+                                          const std::array<double, maximum_tools>& area,
+                                          const std::array<int, maximum_tools>& grasped) noexcept {
+  for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t] + grasped[t];
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {

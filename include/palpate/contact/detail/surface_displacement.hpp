@@ -15,6 +15,7 @@ struct PointLoad {
   int sample = -1;
   HalfSpacePoint point;
   double area = 0.0;                ///< that the point stands for [m^2]
+  double radius = 0.0;              ///< of the tool that presses [m]
   Vector3 moved = Vector3::Zero();  ///< displacement of the point [m]
   Vector3 force = Vector3::Zero();  ///< [N], in the axes of the SubfacetCompliance
 };
@@ -33,10 +34,13 @@ class SurfaceDisplacement {
   /// Continues on a surface with the same vertex numbers and possibly more or fewer, for which `fresh` was constructed.
   /// Forces on vertices that are gone are dropped; loads need `renumber_loads` before anything else. No allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
+  /// Clears cached displacements: points have another compliance.
+  void forget() noexcept { ++generation_; }
   void clear() noexcept {
     count_ = load_count_ = 0;
     pulls_ = false;
-    ++generation_;
+    loaded_radius_ = 0.0;
+    change_loads();
   }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
   void add(int vertex, const Vector3& force, int& slot) noexcept;
@@ -73,10 +77,10 @@ class SurfaceDisplacement {
                    const HalfSpacePoint& point, int number) noexcept;
   /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
   /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken, or a quarter of the tool's radius. Infinite where a force pulls outward. O(loads) after the forces have
-  /// changed, O(1) otherwise.
-  double largest_bulge(const TissueView& tissue, const ContactSamples& samples, double radius) noexcept {
-    return pulls_ ? infinity : std::min(0.5 * largest_dent(tissue, samples), 0.25 * radius);
+  /// taken, or a quarter of the radius of the largest tool with a load. Infinite where a force pulls outward, or more
+  /// along the surface than it presses. O(loads) after the forces have changed, O(1) otherwise.
+  double largest_bulge(const TissueView& tissue, const ContactSamples& samples) noexcept {
+    return pulls_ ? infinity : std::min(0.5 * largest_dent(tissue, samples), 0.25 * loaded_radius_);
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -95,6 +99,10 @@ class SurfaceDisplacement {
   double reach_from_expected(const TissueView& tissue) noexcept;
 
  private:
+  void change_loads() noexcept {
+    ++generation_;
+    ++load_generation_;
+  }
   /// The largest difference of a loaded point from where the vertices alone put it [m].
   double largest_dent(const TissueView& tissue, const ContactSamples& samples) noexcept;
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
@@ -111,14 +119,16 @@ class SurfaceDisplacement {
   std::vector<PointLoad> loads_;
   HalfSpaceLoads half_space_;  // the same loads
   int count_ = 0, load_count_ = 0;
+  std::vector<int> sample_;              // of the loads
   std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
   std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;
   std::vector<Vector3> displacement_, dented_;
   std::vector<std::uint64_t> stamp_, dented_stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
-  double largest_dent_ = 0.0;
-  bool pulls_ = false;  // a load is directed outward
+  std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
+  double largest_dent_ = 0.0, loaded_radius_ = 0.0;
+  bool pulls_ = false;  // a load is directed outward, or mostly along the surface
 };
 
 }}  // namespace palpate

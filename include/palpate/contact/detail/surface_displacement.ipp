@@ -12,6 +12,7 @@ PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capaci
     : forces_(static_cast<std::size_t>(capacity)),
       loads_(static_cast<std::size_t>(capacity)),
       half_space_(capacity),
+      sample_(static_cast<std::size_t>(capacity), -1),
       shown_(static_cast<std::size_t>(vertices)),
       loaded_(static_cast<std::size_t>(vertices)),
       shown_stamp_(static_cast<std::size_t>(vertices), 0),
@@ -40,7 +41,7 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
     return static_cast<std::size_t>(f.vertex) >= displacement_.size();
   });
   count_ = static_cast<int>(end - forces_.begin());
-  ++generation_;
+  change_loads();
 }
 
 PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, int& slot) noexcept {
@@ -57,24 +58,27 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
 PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
   if (load_count_ == static_cast<int>(loads_.size())) return;
   half_space_.set(load_count_, load.point, load.force);
-  pulls_ = pulls_ || load.force.dot(load.point.normal) > 0.0;
+  const double outward = load.force.dot(load.point.normal);
+  pulls_ = pulls_ || outward > 0.0 || load.force.squaredNorm() > 2.0 * outward * outward;
+  loaded_radius_ = std::max(loaded_radius_, load.radius);
+  sample_[static_cast<std::size_t>(load_count_)] = load.sample;
   loads_[static_cast<std::size_t>(load_count_++)] = load;
   for (std::size_t a = 0; a < 3; ++a) {
     if (sample.weights[a] == 0.0) continue;
     const auto v = static_cast<std::size_t>(sample.vertices[a]);
-    if (std::exchange(loaded_stamp_[v], generation_) != generation_) loaded_[v].setZero();
+    if (std::exchange(loaded_stamp_[v], load_generation_) != load_generation_) loaded_[v].setZero();
     loaded_[v] += sample.weights[a] * load.force;
   }
 }
 
 PALPATE_INLINE const Vector3& SurfaceDisplacement::shown(const SubfacetCompliance& subfacet, int vertex) noexcept {
   const auto i = static_cast<std::size_t>(vertex);
-  if (std::exchange(shown_stamp_[i], generation_) == generation_) return shown_[i];
+  if (std::exchange(shown_stamp_[i], load_generation_) == load_generation_) return shown_[i];
   Vector3& u = shown_[i];
   u.setZero();
   for (const SubfacetCompliance::Block& block : subfacet.blocks(vertex)) {
     const auto j = static_cast<std::size_t>(block.vertex);
-    if (loaded_stamp_[j] == generation_) u.noalias() += block.shown.transpose() * loaded_[j];
+    if (loaded_stamp_[j] == load_generation_) u.noalias() += block.shown.transpose() * loaded_[j];
   }
   return u;
 }
@@ -85,11 +89,10 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfa
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
   half_space_.add_displacement(load_count_, point, u);
-  for (int i = 0; i < load_count_; ++i) {
-    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
-    if (load.sample == number || ((number < 0 || subfacet.has_copies()) && is_same_place(point, load.point)))
-      u.noalias() += half_space_self_compliance(point, load.area) * load.force;
-  }
+  const bool by_place = number < 0 || subfacet.has_copies();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(load_count_); ++i)
+    if (sample_[i] == number || (by_place && is_same_place(point, loads_[i].point)))
+      u.noalias() += half_space_self_compliance(point, loads_[i].area) * loads_[i].force;
   return u;
 }
 
@@ -155,7 +158,8 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
 PALPATE_INLINE void SurfaceDisplacement::blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
                                                const ContactSamples& samples) noexcept {
   largest_dent_ = part * largest_dent(tissue, samples) + (1.0 - part) * before.largest_dent(tissue, samples);
-  dent_stamp_ = ++generation_;
+  change_loads();
+  dent_stamp_ = generation_;
   blend_loads(before, part, samples);
   for (int i = 0; i < count_; ++i) {
     VertexForce& f = forces_[static_cast<std::size_t>(i)];
