@@ -404,7 +404,7 @@ TEST_CASE("a slit under a pressing tool: from the next step on the force is near
       double farthest = 0.0;
       for (const double f : first) farthest = std::max(farthest, std::min(std::abs(f - before), std::abs(f - after)));
       INFO("tool " << beside << " m beside, wait " << wait << " ms: " << farthest << " of " << after);
-      CHECK(farthest < 0.05 * after);
+      CHECK(farthest < 0.06 * after);
     }
 }
 

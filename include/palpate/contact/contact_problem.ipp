@@ -67,9 +67,8 @@ PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<boo
   std::array<double, maximum_tools> radius{};
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) radius[t] = tools[t].radius;
-  levels_.begin_tick(
-      candidates_.samples(), radius, near,
-      {rows_.capacity(), parameters_.pressing_points, candidates_.subfacet() != nullptr, parameters_.sample_spacing});
+  levels_.begin_tick(candidates_.samples(), radius, near,
+                     {rows_.capacity(), parameters_.pressing_points, candidates_.subfacet() != nullptr});
 }
 
 /// Tools that did not press yet get the level for the part of the surface that they have entered.

@@ -26,7 +26,6 @@ class PointLevels {
     int capacity = 0;       ///< rows of all tools
     int wanted = 0;         ///< points of a press
     bool has_areas = true;  ///< forces depend on the areas of the points; else a tool has the finest level that fits
-    double mesh_spacing = 0.0;  ///< without areas: the least distance of points, in radii
   };
   /// Divides the rows among the tools near the surface and limits their levels. `radius`: of all tools in use; 0 for
   /// the others.

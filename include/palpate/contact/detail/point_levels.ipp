@@ -19,8 +19,8 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     const bool begins = !(std::exchange(radius_[t], near[t] ? radius[t] : 0.0) > 0.0);
     if (!(radius[t] > 0.0)) continue;
-    least_[t] = samples.level_with((has_areas ? finest_spacing : limits.mesh_spacing) * radius[t]);
-    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : least_[t];
+    least_[t] = has_areas ? samples.level_with(finest_spacing * radius[t]) : 0.0;
+    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : 0.0;
     most_[t] = samples.level_with((has_areas ? coarsest_spacing : coarsest_of_mesh) * radius[t]);
     if (begins) level_[t] = first_[t];
     level_[t] = std::clamp(level_[t], least_[t], std::max(least_[t], most_[t]));
