@@ -70,7 +70,7 @@ struct ContactTool {
   double rotational_compliance = 0.0;             ///< of the coupling [rad/(N m)]; 0 is rigid
   double end_path = 0.0;                          ///< bound of the path of its core by rotation, last tick [m]
   Vector3 outward = Vector3::Zero();              ///< of a sphere that presses: where it came from, unit; else zero
-  double entered = 0.0;  ///< height of its highest contact at rest above its centre, along `outward` [m]
+  double entered = -infinity;  ///< height of its highest contact at rest above its centre, along `outward` [m]
 
   Vector3 friction_displacement = Vector3::Zero(),
           friction_rotation = Vector3::Zero();  ///< of the coupling under friction [m], [rad]

@@ -20,7 +20,7 @@ PALPATE_INLINE void ContactTool::lift() noexcept {
   force.setZero();
   torque.setZero();
   outward.setZero();
-  entered = 0.0;
+  entered = -infinity;
 }
 PALPATE_INLINE void ContactTool::reset() noexcept {
   ContactTool fresh;

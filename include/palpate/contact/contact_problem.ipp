@@ -16,7 +16,7 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
                                               const ContactParameters& parameters)
     : parameters_(checked(parameters.for_tools(1))),
       displacement_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
-      start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
+      start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity, 1),
       candidates_(made_samples(surface, radii, parameters_),
                   parameters_.subfacet_compliance ? surface.subfacet() : nullptr, parameters_.capacity),
       rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
@@ -80,7 +80,10 @@ PALPATE_INLINE void ContactProblem::start_levels(const TissueView& tissue, Tools
   if (std::none_of(begins.begin(), begins.end(), [](bool b) { return b; })) return;
   for (Candidate& c : candidates_.items()) {
     if (!begins[at(c.tool)] || candidates_.least_gap(c) > 0.0) continue;
-    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tools[at(c.tool)], displacement_, c);
+    if (candidates_.is_stale(c)) {
+      if (candidates_.raise_least_gap(tissue, tools[at(c.tool)], displacement_, c) > 0.0) continue;
+      candidates_.evaluate(tissue, tools[at(c.tool)], displacement_, c);
+    }
     if (c.facing && c.gap < 0.0)
       area[at(c.tool)] += pressing * candidates_.samples().area(c.sample, levels_.level(c.tool));
   }
@@ -128,7 +131,10 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
   ProxyMotion::slide(tools);
-  candidates_.begin_tick(tissue.contact_surface(), tools);
+  if (candidates_.begin_tick(tissue.contact_surface(), tools)) {
+    displacement_.forget();
+    start_.forget();
+  }
   auto near = are_near(tools);
   share_rows(tools, near);
   for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
@@ -180,7 +186,7 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
     // Without force also where it restarts elsewhere. A tool that grasps is drawn through the tissue around it.
     if (tool.force.squaredNorm() == 0.0 || is_holding(t)) {
       tool.outward.setZero();
-      tool.entered = 0.0;
+      tool.entered = -infinity;
       continue;
     }
     const auto presses = [&](const Contact& c) { return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0; };

@@ -82,6 +82,7 @@ PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candida
     c.triangle = surface.triangles_at(near.vertex(i)).front();
     c.row = c.slot = -1;
     c.history = {};
+    c.generation = 0;
     take(c, tool);
     vertices_[static_cast<std::size_t>(count_ - 1)] = near.vertex(i);
   }

@@ -19,16 +19,18 @@ struct Candidate {
   int sample = 0;
   int triangle = 0;
   int tool = 0;
-  int row = -1;                      ///< of the contact problem, -1 when it has none
-  int slot = -1;                     ///< slot of its compliance in the last use
-  bool facing = true;                ///< the sphere is on the outer side
-  bool evaluated = true;             ///< false: of gap, point, normal and core only a lower bound of the gap is known
-  double gap = 0.0;                  ///< [m]
-  double seen = 0.0;                 ///< travel of sphere and surface at the last evaluation [m]
-  double force = 0.0;                ///< of the last solution [N]
-  Vector3 point = Vector3::Zero();   ///< on the deformed surface [m]
-  Vector3 normal = Vector3::Zero();  ///< unit, from the point to the closest point of the tool's core
-  Vector3 core = Vector3::Zero();    ///< that point, in the tool's own frame [m]; zero for a sphere
+  int row = -1;                        ///< of the contact problem, -1 when it has none
+  int slot = -1;                       ///< slot of its compliance in the last use
+  bool facing = true;                  ///< the sphere is on the outer side
+  bool evaluated = true;               ///< false: of gap, point, normal and core only a lower bound of the gap is known
+  double gap = 0.0;                    ///< [m]
+  double seen = 0.0;                   ///< travel of sphere and surface at the last evaluation [m]
+  double force = 0.0;                  ///< of the last solution [N]
+  Vector3 point = Vector3::Zero();     ///< on the deformed surface [m]
+  Vector3 normal = Vector3::Zero();    ///< unit, from the point to the closest point of the tool's core
+  Vector3 core = Vector3::Zero();      ///< that point, in the tool's own frame [m]; zero for a sphere
+  Vector3 moved_to = Vector3::Zero();  ///< its place in `generation` of the displacement [m]
+  std::uint64_t generation = 0;        ///< 0: not known
   NormalHistory history;
 
   Vector3 friction = Vector3::Zero();  ///< of the last solution, on the tool [N]

@@ -66,7 +66,8 @@ class Candidates {
   bool move(Candidate& c, const ContactSamples& before, const ContactSurface& surface) const noexcept;
 
   /// Applies changes since the last tick: tools moved elsewhere, lifted or set down, a moved resting surface.
-  void begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept;
+  /// Returns whether the resting surface has moved.
+  bool begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept;
   /// Updates the position of the sphere of a tool.
   void move_sphere(std::size_t t, const ContactTool& tool) noexcept;
   /// Adds a displacement of the surface; `distance` is an upper bound for every point of it [m].
@@ -96,8 +97,8 @@ class Candidates {
   /// Evaluates a candidate at the present deformation and proxy.
   void evaluate(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
                 Candidate& c) noexcept;
-  /// Deformed position of a candidate's point [m].
-  Vector3 position(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
+  /// Deformed position of a candidate's point [m], computed once per generation of the displacement.
+  const Vector3& position(const TissueView& tissue, SurfaceDisplacement& displacement, Candidate& c) const noexcept;
   /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs
   /// as little [m].
   double longest_move(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;

@@ -4,6 +4,7 @@
 #include <palpate/contact/detail/candidates.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -109,25 +110,29 @@ PALPATE_INLINE bool Candidates::move(Candidate& c, const ContactSamples& before,
   c.triangle = triangle_of(surface, c.sample);
   c.row = c.slot = -1;
   c.history = {};
+  c.generation = 0;
   return true;
 }
 
-PALPATE_INLINE void Candidates::begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept {
-  if (revision_ != surface.revision()) forget();
-  revision_ = surface.revision();
+PALPATE_INLINE bool Candidates::begin_tick(const ContactSurface& surface, std::span<const ContactTool> tools) noexcept {
+  const bool has_moved = std::exchange(revision_, surface.revision()) != surface.revision();
+  if (has_moved) forget();
   for (std::size_t t = 0; t < tools.size(); ++t) {
     if (tools[t].active != was_active_[t]) forget();
     was_active_[t] = tools[t].active;
     if (tools[t].active) move_sphere(t, tools[t]);
   }
+  return has_moved;
 }
 
 PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& tool) noexcept {
-  travel_[t] += (tool.proxy - proxy_[t]).norm() + (tool.outward - outward_[t]).norm() * tool.radius +
-                std::abs(std::max(0.0, tool.entered) - entered_[t]);
+  travel_[t] += (tool.proxy - proxy_[t]).norm();
+  const double entered = std::max(-0.5 * tool.radius, tool.entered);  // below that the cone is not in use
+  if (std::max(entered, entered_[t]) > -0.5 * tool.radius)
+    travel_[t] += (tool.outward - outward_[t]).norm() * tool.radius + 1.1 * std::abs(entered - entered_[t]);
   proxy_[t] = tool.proxy;
   outward_[t] = tool.outward;
-  entered_[t] = std::max(0.0, tool.entered);
+  entered_[t] = entered;
   if (tool.half_length == 0.0) return;
   travel_[t] += tool.core_path(tool.rotation - rotation_[t]);
   rotation_[t] = tool.rotation;
@@ -141,15 +146,15 @@ inline Vector3 Candidates::place_by_vertices(const TissueView& tissue, SurfaceDi
   return point;
 }
 
-PALPATE_INLINE Vector3 Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                            const Candidate& c) const noexcept {
+PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                                   Candidate& c) const noexcept {
+  if (std::exchange(c.generation, displacement.generation()) == displacement.generation()) return c.moved_to;
   const ContactSample& sample = sample_of(c);
-  if (subfacet_) {
-    if (const HalfSpacePoint point = half_space_point(c.sample); point.is_known())
-      return rest(tissue.contact_surface(), sample) +
-             displacement.at_point(tissue, *subfacet_, sample, point, c.sample);
-  }
-  return place_by_vertices(tissue, displacement, sample);
+  const HalfSpacePoint point = half_space_point(c.sample);
+  c.moved_to = point.is_known() ? rest(tissue.contact_surface(), sample) +
+                                      displacement.at_point(tissue, *subfacet_, sample, point, c.sample)
+                                : place_by_vertices(tissue, displacement, sample);
+  return c.moved_to;
 }
 
 PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,

@@ -190,6 +190,7 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
     const double squared = squared_distance(samples_[sample]);
     if (!(squared <= near * near)) continue;
     c.sample = sample;
+    c.generation = 0;
     c.gap = std::sqrt(squared) - touching;
     consider(tissue, tool, c, search, list, displacement);
   }

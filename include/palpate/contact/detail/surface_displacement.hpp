@@ -24,8 +24,11 @@ struct PointLoad {
 /// change. The displacement of points within facets needs the forces on points, too.
 class SurfaceDisplacement {
  public:
-  /// Allocates for a surface and for `capacity` loaded vertices; for set-up.
-  SurfaceDisplacement(int vertices, int capacity);
+  /// Allocates for a surface and for `capacity` loaded vertices; for set-up. `number`: 0 or 1, other than that of a
+  /// second object whose generations must be different.
+  SurfaceDisplacement(int vertices, int capacity, int number = 0);
+  /// Changes whenever displacements may change.
+  std::uint64_t generation() const noexcept { return generation_; }
 
   std::span<const VertexForce> forces() const noexcept { return {forces_.data(), static_cast<std::size_t>(count_)}; }
 
@@ -35,7 +38,7 @@ class SurfaceDisplacement {
   /// Forces on vertices that are gone are dropped; loads need `renumber_loads` before anything else. No allocation.
   void move_to(SurfaceDisplacement& fresh) noexcept;
   /// Clears cached displacements: points have another compliance.
-  void forget() noexcept { ++generation_; }
+  void forget() noexcept { generation_ += 2; }
   void clear() noexcept {
     count_ = load_count_ = 0;
     pulls_ = false;
@@ -100,7 +103,7 @@ class SurfaceDisplacement {
 
  private:
   void change_loads() noexcept {
-    ++generation_;
+    generation_ += 2;
     ++load_generation_;
   }
   /// The largest difference of a loaded point from where the vertices alone put it [m].
@@ -125,7 +128,7 @@ class SurfaceDisplacement {
   std::vector<Vector3> displacement_, dented_;
   std::vector<std::uint64_t> stamp_, dented_stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
-  std::uint64_t generation_ = 1, revision_ = 0, dent_stamp_ = 0;
+  std::uint64_t generation_ = 2, revision_ = 0, dent_stamp_ = 0;
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
   double largest_dent_ = 0.0, loaded_radius_ = 0.0;
   bool pulls_ = false;  // a load is directed outward, or mostly along the surface

@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity)
+PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity, int number)
     : forces_(static_cast<std::size_t>(capacity)),
       loads_(static_cast<std::size_t>(capacity)),
       half_space_(capacity),
@@ -21,10 +21,11 @@ PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capaci
       dented_(static_cast<std::size_t>(vertices)),
       stamp_(static_cast<std::size_t>(vertices), 0),
       dented_stamp_(static_cast<std::size_t>(vertices), 0),
-      slot_(static_cast<std::size_t>(vertices), -1) {}
+      slot_(static_cast<std::size_t>(vertices), -1),
+      generation_(2 + static_cast<std::uint64_t>(number)) {}
 
 PALPATE_INLINE void SurfaceDisplacement::begin_tick(std::uint64_t revision) noexcept {
-  if (revision != std::exchange(revision_, revision)) ++generation_;
+  if (revision != std::exchange(revision_, revision)) forget();
 }
 
 PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noexcept {
