@@ -694,7 +694,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
-    if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
+    if (gap > candidates_.longest_move(tissue, tool, displacement_, c)) continue;
     gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
     if (!(gap < -allowed)) continue;
     if (is_finer)

@@ -101,7 +101,8 @@ class Candidates {
   const Vector3& position(const TissueView& tissue, SurfaceDisplacement& displacement, Candidate& c) const noexcept;
   /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs
   /// as little [m].
-  double longest_move(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
+  double longest_move(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
+                      const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 

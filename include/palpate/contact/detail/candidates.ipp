@@ -157,18 +157,18 @@ PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, Sur
   return c.moved_to;
 }
 
-PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                               const Candidate& c) const noexcept {
+PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, const ContactTool& tool,
+                                               SurfaceDisplacement& displacement, const Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return infinity;
   const Vector3 moved = place_by_vertices(tissue, displacement, sample_of(c)) - c.point;
-  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_);
+  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_, tool.radius);
 }
 
 PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, const ContactTool& tool,
                                                   SurfaceDisplacement& displacement, Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return -infinity;
   const double distance = tool.closest(place_by_vertices(tissue, displacement, sample_of(c))).distance;
-  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_));
+  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_, tool.radius));
   c.seen = travel(static_cast<std::size_t>(c.tool));
   c.evaluated = false;
   return c.gap;

@@ -182,7 +182,7 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
     if (subfacet_ && search.reach > 0.25 * tool.radius && displacement.has_loads()) {  // where its vertices are now
       Box moved;
       for (const int v : surface.triangle(triangle)) moved.include(displacement.position(tissue, v));
-      const double within = near - search.reach + displacement.largest_bulge(tissue, samples_);
+      const double within = near - search.reach + displacement.largest_bulge(tissue, samples_, tool.radius);
       if (moved.squared_distance(tool.middle()) > within * within) return;
     }
   }

@@ -279,8 +279,7 @@ PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidate
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
     if (const HalfSpacePoint& point = compliance_.half_space_point(c.slot); point.is_known()) {
       const Vector3 at_rest = tissue.rotates() ? Vector3(compliance_.rotation(c.slot).transpose() * total) : total;
-      displacement.add_load({c.sample, point, c.area, tool.radius, row.point - row.rest, -at_rest},
-                            points.samples()[c.sample]);
+      displacement.add_load({c.sample, point, c.area, row.point - row.rest, -at_rest}, points.samples()[c.sample]);
     }
   }
   for (const VertexForce& f : displacement.forces()) slot_[at(f.vertex)] = -1;

@@ -15,7 +15,6 @@ struct PointLoad {
   int sample = -1;
   HalfSpacePoint point;
   double area = 0.0;                ///< that the point stands for [m^2]
-  double radius = 0.0;              ///< of the tool that presses [m]
   Vector3 moved = Vector3::Zero();  ///< displacement of the point [m]
   Vector3 force = Vector3::Zero();  ///< [N], in the axes of the SubfacetCompliance
 };
@@ -42,7 +41,6 @@ class SurfaceDisplacement {
   void clear() noexcept {
     count_ = load_count_ = 0;
     pulls_ = false;
-    loaded_radius_ = 0.0;
     change_loads();
   }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
@@ -80,10 +78,11 @@ class SurfaceDisplacement {
                    const HalfSpacePoint& point, int number) noexcept;
   /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
   /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken, or a quarter of the radius of the largest tool with a load. Infinite where a force pulls outward, or more
-  /// along the surface than it presses. O(loads) after the forces have changed, O(1) otherwise.
-  double largest_bulge(const TissueView& tissue, const ContactSamples& samples) noexcept {
-    return pulls_ ? infinity : std::min(0.5 * largest_dent(tissue, samples), 0.25 * loaded_radius_);
+  /// taken, or a quarter of the tool's radius. All of it where a force pulls outward. O(loads) after the forces have
+  /// changed, O(1) otherwise.
+  double largest_bulge(const TissueView& tissue, const ContactSamples& samples, double radius) noexcept {
+    const double dent = largest_dent(tissue, samples);
+    return pulls_ ? dent : std::min(0.5 * dent, 0.25 * radius);
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -130,8 +129,8 @@ class SurfaceDisplacement {
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 2, revision_ = 0, dent_stamp_ = 0;
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
-  double largest_dent_ = 0.0, loaded_radius_ = 0.0;
-  bool pulls_ = false;  // a load is directed outward, or mostly along the surface
+  double largest_dent_ = 0.0;
+  bool pulls_ = false;  // a load is directed outward
 };
 
 }}  // namespace palpate

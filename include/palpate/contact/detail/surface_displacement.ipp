@@ -59,9 +59,7 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
 PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
   if (load_count_ == static_cast<int>(loads_.size())) return;
   half_space_.set(load_count_, load.point, load.force);
-  const double outward = load.force.dot(load.point.normal);
-  pulls_ = pulls_ || outward > 0.0 || load.force.squaredNorm() > 2.0 * outward * outward;
-  loaded_radius_ = std::max(loaded_radius_, load.radius);
+  pulls_ = pulls_ || load.force.dot(load.point.normal) > 0.0;
   sample_[static_cast<std::size_t>(load_count_)] = load.sample;
   loads_[static_cast<std::size_t>(load_count_++)] = load;
   for (std::size_t a = 0; a < 3; ++a) {
