@@ -3,6 +3,7 @@
 
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/detail/box.hpp>
 #include <palpate/cut/cut_parameters.hpp>

@@ -3,6 +3,7 @@
 
 #include <palpate/model/moving/moving_tissue.hpp>
 
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/realtime.hpp>
 #include <palpate/model/admission_report.hpp>

@@ -3,6 +3,7 @@
 
 #include <palpate/model/static/linear_tissue.hpp>
 
+#include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/model/admission_report.hpp>
