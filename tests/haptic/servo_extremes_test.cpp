@@ -224,7 +224,7 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
   }
   INFO(lost << " lost, " << elsewhere << " elsewhere, of " << jumps);
   CHECK(lost == 0);
-  CHECK(elsewhere <= 8);  // on edges longer than the radius a deep sphere has more than one equilibrium
+  CHECK(elsewhere <= 12);  // on edges longer than the radius a deep sphere has more than one equilibrium
 }
 
 TEST_CASE("a session that starts in the tissue ramps from zero to an outward force", "[haptic][servo][extreme][D3]") {
