@@ -163,7 +163,8 @@ class ContactProblem {
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0;
-  double of_lifted_ = 0.0;  // forces of tools that are gone, which are still on the tissue [N]
+  double of_lifted_ = 0.0;       // forces of tools that are gone, which are still on the tissue [N]
+  double most_of_lifted_ = 0.0;  // of them, since the tools have gone
   double floor_ = 0.0;
 };
 

@@ -170,7 +170,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area(), grasped);
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (rest > unsettled || !rows_.has_settled() ||
-      of_lifted_ > parameters_.force_tolerance * rows_.largest_force_scale(tools))
+      of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   proxies_.end_tick(tools, rest <= unsettled);
   return status;
@@ -213,6 +213,7 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
 PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept {
   for (const Contact& c : rows_.contacts())
     if (tools[at(c.tool)].force.squaredNorm() == 0.0) of_lifted_ += c.total().norm();
+  most_of_lifted_ = of_lifted_ > 0.0 ? std::max(most_of_lifted_, of_lifted_) : 0.0;
 }
 
 /// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
@@ -516,7 +517,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
-  feedback_ = of_lifted_ = 0.0;
+  feedback_ = of_lifted_ = most_of_lifted_ = 0.0;
 }
 
 /// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.

@@ -41,13 +41,14 @@ class ProxyMotion {
   /// Change of the tools' forces and torques since `begin`, relative to a force `scale` [N].
   double relative_change(Tools tools, double scale) const noexcept;
   /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
-  /// not converged although the devices hardly move, steps become shorter, until a device moves, or a tool begins or
-  /// ends to take part.
+  /// not converged although the devices hardly move, steps become shorter, until a device moves, or nothing presses.
+  /// They also become longer again, after a time that doubles with every failure: shorter steps cost more of them.
   void end_tick(Tools tools, bool converged) noexcept;
 
  private:
-  static constexpr int patience = 8;                         // ticks
-  static constexpr double least_part = 0.125, still = 0.01;  // still: path of a device in a tick, radii
+  static constexpr int patience = 8;                          // ticks
+  static constexpr int first_wait = 32, longest_wait = 4096;  // ticks with shorter steps before longer ones are tried
+  static constexpr double least_part = 0.125, still = 0.01;   // still: path of a device in a tick, radii
   inline static double allowed_part(const ContactTool& tool, double path) noexcept;
   static void rotate(ContactTool& tool, double part) noexcept;
 
@@ -56,6 +57,8 @@ class ProxyMotion {
   std::array<Ahead, maximum_tools> ahead_{};
   double longest_part_ = 1.0;  // of a step
   int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
+  int settled_ticks_ = 0;      // that converged with shorter steps
+  int wait_ = first_wait;
   bool clipped_ = false, arrived_ = true, took_whole_step_ = false;
 };
 

@@ -105,12 +105,24 @@ PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept 
   const bool moves = std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
     return tool.active && tool.path_length() > still * tool.radius;
   });
-  if (moves) longest_part_ = 1.0;
-  restless_ticks_ = moves || converged ? 0 : restless_ticks_ + (took_whole_step_ ? 1 : 0);
+  const bool presses =
+      std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) { return tool.force.squaredNorm() > 0.0; });
+  if (moves || !presses) {
+    longest_part_ = 1.0;
+    restless_ticks_ = settled_ticks_ = 0;
+    wait_ = first_wait;
+  } else if (converged) {
+    restless_ticks_ = 0;
+    if (longest_part_ < 1.0 && ++settled_ticks_ >= wait_) {
+      longest_part_ = std::min(1.0, 2.0 * longest_part_);
+      settled_ticks_ = 0;
+    }
+  } else if (took_whole_step_ && ++restless_ticks_ >= patience) {
+    restless_ticks_ = settled_ticks_ = 0;
+    longest_part_ = std::max(least_part, 0.5 * longest_part_);
+    wait_ = std::min(2 * wait_, longest_wait);
+  }
   took_whole_step_ = false;
-  if (restless_ticks_ < patience) return;
-  restless_ticks_ = 0;
-  longest_part_ = std::max(least_part, 0.5 * longest_part_);
 }
 
 }}  // namespace palpate
