@@ -1,13 +1,14 @@
 // The compliance of contact points that are closer to each other than the vertices of the mesh.
 #pragma once
 
-#include <palpate/contact/detail/contact_samples.hpp>
 #include <palpate/contact/detail/projected_half_space.hpp>
 
 #include <span>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+struct ContactSample;  // contact_samples.hpp, whose definitions need the class below
 
 /// What has to be added to the compliance of the mesh so that the points of a contact have the dent of an elastic body,
 /// not that of the facets (subtraction of the singularity):

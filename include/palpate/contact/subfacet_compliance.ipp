@@ -1,6 +1,7 @@
 // Definitions of subfacet_compliance.hpp.
 #pragma once
 
+#include <palpate/contact/detail/contact_samples.hpp>
 #include <palpate/contact/subfacet_compliance.hpp>
 
 #include <algorithm>
