@@ -3,6 +3,8 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -202,6 +204,29 @@ TEST_CASE("every level divides the whole surface among points that are spread ev
     CHECK(count <= 1.5 * hexagons);
     if (samples.spacing(level) > 2.0 / cells) CHECK(count >= 0.6 * hexagons);  // else the mesh has few vertices
   }
+}
+
+TEST_CASE("a rotated, moved and scaled copy has the same levels and areas", "[contact][samples][levels]") {
+  // Lattices have many points that are equally far from two of a level: rounding must not choose between these.
+  const auto split = GENERATE(BoxSplit::six, BoxSplit::five_mirrored);
+  const Mesh<Tet4> mesh = box_tet4(Vector3(1, 1, 0.5), {5, 5, 3}, split);
+  Mesh<Tet4> copy = mesh;
+  const double scale = 1.7;
+  for (Vector3& x : copy.positions)
+    x = scale * (Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()) * x) + Vector3(0.3, -0.2, 0.1);
+  const ContactSamples samples(surface_to_sample(mesh), 0.03, 0.3),
+      copies(surface_to_sample(copy), 0.03 * scale, 0.3 * scale);
+  REQUIRE(samples.count() == copies.count());
+  REQUIRE(samples.levels() == copies.levels());
+  int other_level = 0;
+  double largest = 0.0;
+  for (int s = 0; s < samples.count(); ++s) {
+    other_level += samples.level_of(s) != copies.level_of(s);
+    for (int level = 0; level <= samples.level_of(s); ++level)
+      largest = std::max(largest, std::abs(copies.area(s, level) / (scale * scale * samples.area(s, level)) - 1.0));
+  }
+  CHECK(other_level == 0);
+  CHECK(largest < 1e-5);  // areas are float
 }
 
 TEST_CASE("the samples of a triangle begin with those of the last levels", "[contact][samples][levels]") {

@@ -63,6 +63,7 @@ class ContactSamples::Builder {
       for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * at_rest(s.vertices[a]);
       if (const double length = p.normal.norm(); length > 0.0) p.normal /= length;
       p.body = body_of(s.vertices[0]);
+      p.key = key_of(s);
     }
   }
 
@@ -83,10 +84,10 @@ class ContactSamples::Builder {
     made_.level_.assign(points_.size(), 0);
     std::vector<int> order(points_.size());
     std::iota(order.begin(), order.end(), 0);
-    std::vector<std::uint64_t> key;
-    for (const ContactSample& s : made_.samples_) key.push_back(key_of(s));
-    std::sort(order.begin(), order.end(),
-              [&](int i, int j) { return key[at(i)] != key[at(j)] ? key[at(i)] < key[at(j)] : i < j; });
+    std::sort(order.begin(), order.end(), [&](int i, int j) {
+      const std::uint64_t one = points_[at(i)].key, other = points_[at(j)].key;
+      return one != other ? one < other : i < j;
+    });
     std::vector<int> taken;
     for (int level = made_.levels_ - 1; level > 0; --level) {
       Cells cells(points_, least_distance * made_.spacing(level));
@@ -147,6 +148,7 @@ class ContactSamples::Builder {
     Vector3 position = Vector3::Zero(), normal = Vector3::Zero();
     double area = 0.0;  // of level 0
     int body = 0;
+    std::uint64_t key = 0;
   };
 
   /// Points in cells of a grid, in a hash table with chains. Points with normals more than 60 degrees apart are not
@@ -168,12 +170,15 @@ class ContactSamples::Builder {
     bool has_near(const Point& p) const noexcept {
       return visit(p, [this, &p](int i) { return squared_distance(p, i) < squared_; });
     }
-    /// The nearest point that is closer than the distance; -1 when none is.
+    /// The nearest point that is closer than the distance; -1 when none is. Lattices have many points between two that
+    /// are equally far: of these the one with the smaller key, so that rounding does not choose.
     int nearest(const Point& p) const noexcept {
       int best = -1;
       double least = squared_;
       visit(p, [&](int i) {
-        if (const double squared = squared_distance(p, i); squared < least) least = squared, best = i;
+        const double squared = squared_distance(p, i);
+        const bool is_equal = best >= 0 && std::abs(squared - least) <= rounding * least;
+        if (is_equal ? points_[at(i)].key < points_[at(best)].key : squared < least) least = squared, best = i;
         return false;
       });
       return best;
