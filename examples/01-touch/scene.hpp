@@ -46,7 +46,7 @@ inline Scene make_scene(const Mesh<Tet4>& mesh) {
 /// How the tool moves; lengths in [m].
 struct Plan {
   double seconds = 10.0;
-  double depth = 5e-3;    ///< depth of the press
+  double depth = 2e-3;    ///< depth of the press: half the radius, which linear tissue shows well
   double drag = 30e-3;    ///< length of the slide, half of it on either side of the lesion
   double height = 12e-3;  ///< of the sphere above the surface before and after
 };

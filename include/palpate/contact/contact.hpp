@@ -100,16 +100,19 @@ struct ContactTool {
   /// Radius of that sphere [m].
   double core_radius() const noexcept {
     if (hull != nullptr) return hull->radius();
-    return half_length > 0.0         ? half_length
-           : entered > -0.5 * radius ? 0.2 * radius + 1.1 * std::max(0.0, entered)
-                                     : 0.0;
+    return half_length > 0.0 ? half_length : has_cone() ? 0.2 * radius + 1.1 * std::max(0.0, entered) : 0.0;
   }
+  /// Whether a sphere has entered material above the rim of its cap, where its cone begins.
+  bool has_cone() const noexcept { return entered > -cone_cosine * radius; }
+  /// Upper bound of the path of any point of the surface of cap and cone by a change of `outward` and `entered` [m].
+  double cone_path(const Vector3& outward_before, double entered_before) const noexcept;
   /// Upper bound of the path of the device since the last tick, at the end that moved most [m].
   double path_length() const noexcept;
   /// Longest path of the proxy in one linearisation: contact points up to this distance are in the list.
   double longest_step() const noexcept { return 0.25 * radius + path_length(); }
 
  private:
+  static constexpr double cone_cosine = 0.5;  // of the rim of the cap, from `outward` reversed: 60 degrees
   CorePoint closest_extended(const Vector3& p) const noexcept;
   CorePoint closest_pressed(const Vector3& p) const noexcept;
   bool is_within_extended(const Vector3& p, double distance) const noexcept;

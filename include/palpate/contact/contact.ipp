@@ -55,7 +55,7 @@ PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const n
 /// farther from `outward` than the rim of the cap. On plane tissue nothing is beyond that rim until the sphere is about
 /// a radius deep.
 PALPATE_INLINE CorePoint ContactTool::closest_pressed(const Vector3& p) const noexcept {
-  constexpr double cosine = 0.5, sine = 0.8660254037844386;  // of the rim of the cap, from the pole
+  constexpr double cosine = cone_cosine, sine = 0.8660254037844386;  // of the rim of the cap, from the pole
   const CorePoint own = from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
   const double height = outward.dot(p - proxy);
   if (own.normal.dot(outward) >= cosine || height > entered) return own;
@@ -65,6 +65,11 @@ PALPATE_INLINE CorePoint ContactTool::closest_pressed(const Vector3& p) const no
   const Vector3 normal = cosine * outward - sine * aside;
   const double along = sine * distance - cosine * height;
   return {p + along * normal - proxy, normal, along};
+}
+PALPATE_INLINE double ContactTool::cone_path(const Vector3& outward_before, double entered_before) const noexcept {
+  const double begin = -cone_cosine * radius, now = std::max(begin, entered), before = std::max(begin, entered_before);
+  if (!(std::max(now, before) > begin)) return 0.0;
+  return (outward - outward_before).norm() * radius + 1.1 * std::abs(now - before);
 }
 PALPATE_INLINE bool ContactTool::is_within_extended(const Vector3& p, double distance) const noexcept {
   if (hull != nullptr) return hull->may_be_within(rotation.transpose() * (p - proxy), distance);

@@ -172,7 +172,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
-  proxies_.end_tick(tools, rest <= unsettled);
+  if (proxies_.end_tick(tools, rest <= unsettled)) status.set(StatusFlag::solver_not_converged);
   return status;
 }
 
@@ -196,7 +196,7 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
     for (const Contact& c : rows_.contacts())
       if (presses(c)) sum += c.force * c.normal, all += c.force;
     if (all == 0.0) continue;  // the surface was cut
-    const bool is_shallow = tool.outward.squaredNorm() == 0.0 || tool.entered < -0.5 * tool.radius;
+    const bool is_shallow = tool.outward.squaredNorm() == 0.0 || !tool.has_cone();
     if (is_shallow) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
     tool.entered = -infinity;
     constexpr double facing = 0.5;

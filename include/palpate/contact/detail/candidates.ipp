@@ -38,7 +38,7 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
   outward_.fill(Vector3::Zero());
-  entered_.fill(0.0);
+  entered_.fill(-infinity);
   rotation_.fill(Matrix3::Zero());
   was_active_.fill(false);
   level_.fill(0);
@@ -127,12 +127,10 @@ PALPATE_INLINE bool Candidates::begin_tick(const ContactSurface& surface, std::s
 
 PALPATE_INLINE void Candidates::move_sphere(std::size_t t, const ContactTool& tool) noexcept {
   travel_[t] += (tool.proxy - proxy_[t]).norm();
-  const double entered = std::max(-0.5 * tool.radius, tool.entered);  // below that the cone is not in use
-  if (std::max(entered, entered_[t]) > -0.5 * tool.radius)
-    travel_[t] += (tool.outward - outward_[t]).norm() * tool.radius + 1.1 * std::abs(entered - entered_[t]);
+  travel_[t] += tool.cone_path(outward_[t], entered_[t]);
   proxy_[t] = tool.proxy;
   outward_[t] = tool.outward;
-  entered_[t] = entered;
+  entered_[t] = tool.entered;
   if (tool.half_length == 0.0) return;
   travel_[t] += tool.core_path(tool.rotation - rotation_[t]);
   rotation_[t] = tool.rotation;

@@ -10,8 +10,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+/// A point at the rim of a contact may press in every other tick: it keeps its anchor over one tick without force. With
+/// a new anchor each time, its friction force would come and go, and with it the normal forces.
 inline bool ContactRows::sticks(const Candidate& c) const noexcept {
-  return c.stuck_tick != 0 && c.stuck_tick + 1 == tick_;
+  return c.stuck_tick != 0 && c.stuck_tick + 2 >= tick_;
 }
 
 PALPATE_INLINE void ContactRows::inherit_friction(const ContactTool& tool, Candidate& c) const noexcept {

@@ -101,7 +101,24 @@ PALPATE_INLINE double ProxyMotion::relative_change(Tools tools, double scale) co
   return change > 0.0 ? change / scale : 0.0;
 }
 
-PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept {
+/// Updates the changes of the forces from tick to tick while devices rest. Back and forth: the change is opposite to
+/// the one before. A slip, once, is not.
+PALPATE_INLINE bool ProxyMotion::alternates(Tools tools) noexcept {
+  const bool rest = std::all_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
+    return !tool.active || tool.path_length() <= rests * tool.radius;
+  });
+  bool any = false;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const Vector3 change = rest ? Vector3(tools[t].force - last_force_[t]) : Vector3(Vector3::Zero());
+    const double least = alternating * tools[t].force.norm();
+    any = any || (std::min(change.norm(), last_change_[t].norm()) > least && change.dot(last_change_[t]) < 0.0);
+    last_force_[t] = tools[t].force;
+    last_change_[t] = change;
+  }
+  return any;
+}
+
+PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged) noexcept {
   const bool moves = std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
     return tool.active && tool.path_length() > still * tool.radius;
   });
@@ -123,6 +140,7 @@ PALPATE_INLINE void ProxyMotion::end_tick(Tools tools, bool converged) noexcept 
     wait_ = std::min(2 * wait_, longest_wait);
   }
   took_whole_step_ = false;
+  return alternates(tools);
 }
 
 }}  // namespace palpate
