@@ -76,9 +76,10 @@ class Touching {
   }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Keeps the tool fixed, applies the forces to the whole body and measures the distance of the pressed points from
-  /// the sphere, relative to the depth. Does not use the stored compliance. Median of five positions: occasionally a
-  /// contact on a rough surface takes long to settle.
+  /// Keeps the tool fixed and measures, relative to the depth, the larger of two errors: the distance of the points
+  /// that press from the sphere, and the difference between the displacement of their vertices by the stored compliance
+  /// and that of the whole body under the same forces. Median of five positions: occasionally a contact on a rough
+  /// surface takes long to settle.
   double gap_error() {
     std::vector<double> gaps;
     for (int i = 0; i < 5; ++i) gaps.push_back(settled_gap());
@@ -108,16 +109,18 @@ class Touching {
   double settled_gap() {
     ToolState state = read();
     for (int i = 0; i < 50; ++i, state.time += 1e-3) servo_.tick({&state, 1});
+    const auto forces = servo_.read_snapshot().vertex_forces();
     VectorX u(3 * model_->mesh().node_count());
-    model_->displacement_with(servo_.read_snapshot().vertex_forces(), u);
+    model_->displacement_with(forces, u);
     double worst = pressing() > 0 ? 0.0 : infinity;
     for (const ToolContact& c : servo_.contacts()) {
-      Vector3 point = Vector3::Zero();
-      for (std::size_t a = 0; a < 3; ++a) {
-        const NodeId node = model_->touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
-        point += c.weights[a] * (model_->rest_position(node) + u.segment<3>(3 * Index{node}));
+      worst = std::max(worst, std::abs((servo_.proxy() - c.point).norm() - radius_));
+      for (const int vertex : c.vertices) {
+        Vector3 difference = u.segment<3>(3 * Index{model_->touchable_nodes()[static_cast<std::size_t>(vertex)]});
+        for (const VertexForce& f : forces)
+          difference -= model_->compliance(vertex, f.vertex) * f.force.in_model_axes();
+        worst = std::max(worst, difference.norm());
       }
-      worst = std::max(worst, std::abs((servo_.proxy() - point).norm() - radius_));
     }
     return worst / depth_;
   }

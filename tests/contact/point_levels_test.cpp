@@ -21,13 +21,15 @@ ContactSamples plane_of_samples() {
   return {pad.contact_surface(), PointLevels::finest_spacing * tip_radius, PointLevels::coarsest_spacing * tip_radius};
 }
 
-/// A tick in which tools press parts of a plane with these areas, in so far as they have rows.
-Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity) {
-  Areas radii{};
-  radii.fill(tip_radius);
+/// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the points,
+/// relative to that of hexagons.
+Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity,
+            double density = 1.0) {
+  std::array<PointLevels::Size, maximum_tools> sizes;
+  sizes.fill({tip_radius, tip_radius});
   std::array<bool, maximum_tools> near{};
   for (std::size_t t = 0; t < maximum_tools; ++t) near[t] = areas[t] > 0.0;
-  levels.begin_tick(samples, radii, near, {capacity, 24});
+  levels.begin_tick(samples, sizes, near, {capacity, 24});
   Counts used{};
   Areas pressed{};
   for (std::size_t t = 0; t < maximum_tools; ++t) {
@@ -35,7 +37,7 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
     const double level = levels.level(tool);
     // Between two levels there are the points of the lower one.
     const double spacing = samples.spacing(std::floor(level));
-    const int points = static_cast<int>(areas[t] / (0.866 * spacing * spacing));
+    const int points = static_cast<int>(density * areas[t] / (0.866 * spacing * spacing));
     used[t] = std::min(points, levels.share(tool));
     for (int i = used[t]; i < points; ++i) levels.note_left_out(tool, 1e-3);
     pressed[t] = areas[t] * used[t] / std::max(1, points);
@@ -76,7 +78,7 @@ TEST_CASE("levels change in small steps", "[contact][levels]") {
 TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
   PointLevels levels;
-  levels.begin_tick(samples, {tip_radius}, {true}, {64, 24});
+  levels.begin_tick(samples, {{{tip_radius, tip_radius}}}, {true}, {64, 24});
   levels.start(samples, 0, 3e-5);
   const double level = levels.level(0);
   CHECK(level > 1.0);
@@ -101,4 +103,21 @@ TEST_CASE("rows are divided by need, and never more than there are", "[contact][
   CHECK(*std::min_element(many.begin(), many.end()) >= 5);
   CHECK(std::accumulate(many.begin(), many.end(), 0) <= 100);
   CHECK(levels.deepest() == 0.0);  // fewer points each, none without a row
+}
+
+TEST_CASE("a tool that rests keeps its level where the points of a finer one do not fit", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  for (double area = 1.5e-5; area < 6e-5; area *= 1.07) {
+    PointLevels levels;
+    for (int i = 0; i < 100; ++i) tick(levels, samples, {area, area}, 60, 1.3);
+    const double level = levels.level(0);
+    int left_out = 0;
+    for (int i = 0; i < 100; ++i) {
+      tick(levels, samples, {area, area}, 60, 1.3);
+      left_out += levels.deepest() > 0.0;
+    }
+    CAPTURE(area);
+    CHECK(std::abs(levels.level(0) - level) < 0.01);
+    CHECK((left_out == 0 || left_out == 100));
+  }
 }

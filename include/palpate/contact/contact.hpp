@@ -15,7 +15,7 @@ inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 
 inline constexpr int largest_default_capacity =
     default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1);
 
-/// Radii of the tools of a session [m].
+/// Sizes of the tools of a session [m]: the smallest radius, and the largest `ContactTool::point_scale`.
 struct ToolRadii {
   double smallest, largest;
   ToolRadii(double radius) noexcept : smallest(radius), largest(radius) {}  // NOLINT(google-explicit-constructor)
@@ -102,6 +102,9 @@ struct ContactTool {
     if (hull != nullptr) return hull->radius();
     return half_length > 0.0 ? half_length : has_cone() ? 0.2 * radius + 1.1 * std::max(0.0, entered) : 0.0;
   }
+  /// What the largest spacing of its contact points is relative to [m]: the radius of a sphere or capsule. The faces of
+  /// a convex tool may be much larger than the radius of its edges.
+  double point_scale() const noexcept { return hull != nullptr ? radius + 0.5 * hull->radius() : radius; }
   /// Whether a sphere has entered material above the rim of its cap, where its cone begins.
   bool has_cone() const noexcept { return entered > -cone_cosine * radius; }
   /// Upper bound of the path of any point of the surface of cap and cone by a change of `outward` and `entered` [m].

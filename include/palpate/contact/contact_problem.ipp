@@ -50,7 +50,7 @@ inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
 PALPATE_INLINE ContactSamples ContactProblem::made_samples(const ContactSurface& surface, const ToolRadii& radii,
                                                            const ContactParameters& p) {
   if (p.subfacet_compliance && surface.subfacet() != nullptr)
-    return {surface, PointLevels::finest_spacing * radii.smallest, PointLevels::coarsest_spacing * radii.largest};
+    return {surface, PointLevels::finest_spacing * radii.smallest, PointLevels::crowded_spacing * radii.largest};
   const double finest = p.sample_spacing * radii.smallest;
   return {surface, finest, std::max(finest, PointLevels::coarsest_of_mesh * radii.largest)};
 }
@@ -64,10 +64,10 @@ inline std::array<bool, maximum_tools> ContactProblem::are_near(Tools tools) con
 
 /// Divides the rows among these tools.
 PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept {
-  std::array<double, maximum_tools> radius{};
+  std::array<PointLevels::Size, maximum_tools> sizes{};
   for (std::size_t t = 0; t < tools.size(); ++t)
-    if (tools[t].active) radius[t] = tools[t].radius;
-  levels_.begin_tick(candidates_.samples(), radius, near,
+    if (tools[t].active) sizes[t] = {tools[t].radius, tools[t].point_scale()};
+  levels_.begin_tick(candidates_.samples(), sizes, near,
                      {rows_.capacity(), parameters_.pressing_points, candidates_.subfacet() != nullptr});
 }
 
@@ -681,12 +681,15 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   levels_.begin_round();
   proxies_.look_ahead(tools, floor_);
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
-  for (Candidate& c : candidates_.items()) {
+  std::array<double, maximum_tools> reaches{};
+  for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
+  for (const int i : candidates_.within(reaches, tools)) {
+    Candidate& c = candidates_.items()[at(i)];
     const bool is_finer = !may_have_row(c);
     if (c.row >= 0 || (is_finer && levels_.has_areas()) || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
-    const double reach = ahead.farthest + 2.0 * rows_.longest_path();
+    const double reach = reaches[at(c.tool)];
     if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) {
       if (candidates_.raise_least_gap(tissue, tool, start_, c) > reach) continue;

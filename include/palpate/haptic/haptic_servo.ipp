@@ -21,7 +21,7 @@ inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   ToolRadii radii(no_sphere, 0.0);
   for (const ContactTool& tool : tools) {
     radii.smallest = std::min(radii.smallest, tool.radius);
-    if (tool.radius < no_sphere) radii.largest = std::max(radii.largest, tool.radius);
+    if (tool.radius < no_sphere) radii.largest = std::max(radii.largest, tool.point_scale());
   }
   return radii;
 }

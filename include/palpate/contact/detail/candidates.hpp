@@ -90,6 +90,12 @@ class Candidates {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
 
+  /// Numbers of all candidates whose gap may be at most that of their tool in `reach`, and of some more, in increasing
+  /// order. Collected again only when spheres and surface have moved by a part of the radius: most candidates are
+  /// farther, and visiting all of them in every round would cost as much as a small contact.
+  std::span<const int> within(const std::array<double, maximum_tools>& reach,
+                              std::span<const ContactTool> tools) noexcept;
+
   /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs
   /// more than that, and returns the bound.
   double raise_least_gap(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
@@ -181,6 +187,9 @@ class Candidates {
   int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
+  std::vector<int> near_;  // numbers of candidates
+  int near_count_ = -1;    // negative: not collected
+  std::array<double, maximum_tools> near_range_{}, near_travel_{};
   std::array<Vector3, maximum_tools> proxy_, outward_;
   std::array<double, maximum_tools> entered_{};
   std::array<Matrix3, maximum_tools> rotation_;

@@ -22,7 +22,8 @@ PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<co
       subfacet_(std::move(subfacet)),
       list_{CandidateList(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room))},
       next_list_{list_.points},
-      loaded_(static_cast<std::size_t>(capacity)) {
+      loaded_(static_cast<std::size_t>(capacity)),
+      near_(static_cast<std::size_t>(list_.points.maximum())) {
   reset();
 }
 
@@ -35,6 +36,7 @@ PALPATE_INLINE void Candidates::reset() noexcept {
   list_.reach = list_.surface_built = 0.0;
   leaves_ = 0;
   valid_ = is_new_ = lost_forces_ = false;
+  near_count_ = -1;
   revision_ = 0;
   proxy_.fill(Vector3::Zero());
   outward_.fill(Vector3::Zero());
@@ -99,6 +101,7 @@ PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface&
   }
   next_ = 0;
   valid_ = false;
+  near_count_ = -1;
   revision_ = surface.revision();
 }
 
@@ -170,6 +173,25 @@ PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, cons
   c.seen = travel(static_cast<std::size_t>(c.tool));
   c.evaluated = false;
   return c.gap;
+}
+
+PALPATE_INLINE std::span<const int> Candidates::within(const std::array<double, maximum_tools>& reach,
+                                                       std::span<const ContactTool> tools) noexcept {
+  constexpr double further = 0.1;  // radii
+  bool known = near_count_ >= 0;
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    known = known && (!tools[t].active || reach[t] + (travel(t) - near_travel_[t]) <= near_range_[t]);
+  if (!known) {
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      near_range_[t] = reach[t] + further * tools[t].radius;
+      near_travel_[t] = travel(t);
+    }
+    near_count_ = 0;
+    for (int i = 0; i < list_.points.count(); ++i)
+      if (const Candidate& c = list_.points[i]; !(least_gap(c) > near_range_[static_cast<std::size_t>(c.tool)]))
+        near_[static_cast<std::size_t>(near_count_++)] = i;
+  }
+  return {near_.data(), static_cast<std::size_t>(near_count_)};
 }
 
 PALPATE_INLINE void Candidates::evaluate(const TissueView& tissue, const ContactTool& tool,

@@ -76,6 +76,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   leaves_ = search_.leaves;
   search_.runs = false;
   is_new_ = true;
+  near_count_ = -1;
   valid_ = !lost_forces_;
 }
 
@@ -95,6 +96,7 @@ PALPATE_INLINE void Candidates::take_next() noexcept {
   leaves_ = search_.leaves;
   search_.runs = search_.ends = false;
   is_new_ = true;
+  near_count_ = -1;
 }
 
 /// Copies the points of the list that press.

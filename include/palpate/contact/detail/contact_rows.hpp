@@ -128,8 +128,14 @@ class ContactRows {
   inline void build_row(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
   /// Displacement of the point in a row per force on that in another, whose slot is not larger [m/N]. `workspace`: for
   /// two rows at one point.
-  inline const Matrix3& between(const TissueView& tissue, const Candidates& points, int i, int j,
-                                Matrix3& workspace) noexcept;
+  PALPATE_ALWAYS_INLINE const Matrix3& between(const TissueView& tissue, const Candidates& points, int i, int j,
+                                               Matrix3& workspace) noexcept {
+    const int p = candidate_[at(i)]->slot, q = candidate_[at(j)]->slot;
+    const Matrix3& compliance = compliance_(tissue, points, p, q);
+    return p == q || has_copies_ ? with_self_compliance(tissue, points, i, j, compliance, workspace) : compliance;
+  }
+  const Matrix3& with_self_compliance(const TissueView& tissue, const Candidates& points, int i, int j,
+                                      const Matrix3& compliance, Matrix3& workspace) const noexcept;
   inline void update_gaps() noexcept;
   inline Vector3 moved_point(int i, int pressing) const noexcept;
   inline Vector3 redirected_displacement(const TissueView& tissue, const Candidates& points, int i) noexcept;
@@ -145,6 +151,7 @@ class ContactRows {
   double floor_ = 0.0, longest_path_ = 0.0;
   double alternation_change_ = 0.0;  // of a normal force in the last turn of slide, relative to the largest one
   std::uint64_t tick_ = 0;
+  bool has_copies_ = false;  // different vertices may be at the same place
   PointCompliance compliance_;
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;

@@ -57,10 +57,11 @@ inline double ContactRows::set_responses(const double* c, const double* m, const
   return m[0] * x + m[1] * y + m[2] * z;
 }
 
-inline const Matrix3& ContactRows::between(const TissueView& tissue, const Candidates& points, int i, int j,
-                                           Matrix3& workspace) noexcept {
+/// Only of points at the same place: out of line, so that what is common is inlined.
+PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView& tissue, const Candidates& points,
+                                                                int i, int j, const Matrix3& compliance,
+                                                                Matrix3& workspace) const noexcept {
   const Candidate &c = *candidate_[at(i)], &other = *candidate_[at(j)];
-  const Matrix3& compliance = compliance_(tissue, points, c.slot, other.slot);
   if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
@@ -189,6 +190,7 @@ PALPATE_INLINE Status ContactRows::require_columns(const TissueView& tissue) noe
 PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const Candidates& points,
                                        std::span<const ContactTool> tools, double floor, int first) noexcept {
   floor_ = floor;
+  has_copies_ = points.subfacet() != nullptr && points.subfacet()->has_copies();
   problem_.resize(count_);
   for (int i = first; i < count_; ++i) {
     problem_.lambda[at(i)] = 1.0;  // it presses, or would penetrate

@@ -15,7 +15,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// higher level at once. What one tool does not need of the rows is for the others. No allocation.
 class PointLevels {
  public:
-  static constexpr double finest_spacing = 0.125, coarsest_spacing = 0.5;  ///< of points, in radii
+  static constexpr double finest_spacing = 0.125;   ///< of points, in radii
+  static constexpr double coarsest_spacing = 0.5;   ///< in ContactTool::point_scale
+  static constexpr double crowded_spacing = 0.708;  ///< the same where a tool has no rows for the coarsest one
   /// Of a tool that does not press: it begins to press when it is a hundredth of its radius in the surface, or earlier.
   static constexpr double first_spacing = 0.25;
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
@@ -27,9 +29,12 @@ class PointLevels {
     int wanted = 0;         ///< points of a press
     bool has_areas = true;  ///< forces depend on the areas of the points; else a tool has the finest level that fits
   };
-  /// Divides the rows among the tools near the surface and limits their levels. `radius`: of all tools in use; 0 for
-  /// the others.
-  void begin_tick(const ContactSamples& samples, const std::array<double, maximum_tools>& radius,
+  /// What the spacing of a tool's points is relative to [m]; 0 of a tool that is not in use.
+  struct Size {
+    double radius = 0.0, scale = 0.0;  ///< scale: ContactTool::point_scale
+  };
+  /// Divides the rows among the tools near the surface and limits their levels.
+  void begin_tick(const ContactSamples& samples, const std::array<Size, maximum_tools>& sizes,
                   const std::array<bool, maximum_tools>& near, const Limits& limits) noexcept;
   int share(int tool) const noexcept { return share_[at(tool)]; }
   bool has_areas() const noexcept { return limits_.has_areas; }
@@ -61,11 +66,19 @@ class PointLevels {
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
-  double step(const ContactSamples& samples, std::size_t tool, int used, double area) const noexcept;
+  double step(const ContactSamples& samples, std::size_t tool, int used, double area) noexcept;
+  double least_with_rows(std::size_t tool, double area) noexcept;
   double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
 
   std::array<int, maximum_tools> share_{}, needed_{}, left_out_{}, skipped_{};
-  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{};
+  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{}, crowded_{};
+  /// The last time that the points of a tool did not fit.
+  struct Crowd {
+    double level = 0.0;  ///< at which they fit
+    double area = -1.0;  ///< that pressed there [m^2]; negative: not known yet
+    int share = 0;       ///< rows; 0: never
+  };
+  std::array<Crowd, maximum_tools> crowd_{};
   double deepest_ = 0.0;
   Limits limits_;
 };

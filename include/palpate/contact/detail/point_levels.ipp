@@ -10,20 +10,22 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples,
-                                            const std::array<double, maximum_tools>& radius,
+PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const std::array<Size, maximum_tools>& sizes,
                                             const std::array<bool, maximum_tools>& near,
                                             const Limits& limits) noexcept {
   limits_ = limits;
   const bool has_areas = limits.has_areas;
   for (std::size_t t = 0; t < maximum_tools; ++t) {
-    const bool begins = !(std::exchange(radius_[t], near[t] ? radius[t] : 0.0) > 0.0);
-    if (!(radius[t] > 0.0)) continue;
-    least_[t] = has_areas ? samples.level_with(finest_spacing * radius[t]) : 0.0;
-    first_[t] = has_areas ? samples.level_with(first_spacing * radius[t]) : 0.0;
-    most_[t] = samples.level_with((has_areas ? coarsest_spacing : coarsest_of_mesh) * radius[t]);
+    const auto [radius, scale] = sizes[t];
+    const bool begins = !(std::exchange(radius_[t], near[t] ? radius : 0.0) > 0.0);
+    if (!(radius > 0.0)) continue;
+    least_[t] = has_areas ? samples.level_with(finest_spacing * radius) : 0.0;
+    first_[t] = has_areas ? samples.level_with(first_spacing * radius) : 0.0;
+    most_[t] =
+        std::max(least_[t], samples.level_with(has_areas ? coarsest_spacing * scale : coarsest_of_mesh * radius));
+    crowded_[t] = has_areas ? std::max(most_[t], samples.level_with(crowded_spacing * scale)) : most_[t];
     if (begins) level_[t] = first_[t];
-    level_[t] = std::clamp(level_[t], least_[t], std::max(least_[t], most_[t]));
+    level_[t] = std::clamp(level_[t], least_[t], crowded_[t]);
   }
   divide();
   begin_round();
@@ -61,11 +63,15 @@ PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
   return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
 }
 
-/// The level at which an area has the wanted number of points, each the middle of a hexagon.
+/// The level at which an area has the wanted number of points, each the middle of a hexagon. Above the coarsest one
+/// only where the tool has no rows for that.
 PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std::size_t tool,
                                              double area) const noexcept {
-  const double spacing = std::sqrt(area / wanted(tool) * 2.0 / std::numbers::sqrt3);
-  return std::clamp(samples.level_with(spacing), least_[tool], std::max(least_[tool], most_[tool]));
+  const auto level_with = [&](double points) {
+    return samples.level_with(std::sqrt(area / points * 2.0 / std::numbers::sqrt3));
+  };
+  const double fitting = std::min(level_with(0.5 * share_[tool]), crowded_[tool]);
+  return std::clamp(level_with(wanted(tool)), least_[tool], std::max(most_[tool], fitting));
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
@@ -89,12 +95,24 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
   deepest_ = std::max(deepest_, penetration);
 }
 
+/// The least level for which a tool has rows, as far as it is known: where points did not fit, the level does not
+/// return until less of the surface presses or the tool has more rows. Otherwise a tool that rests would try again and
+/// again.
+PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, double area) noexcept {
+  constexpr double less_area = 0.8, more_rows = 1.25;
+  Crowd& crowd = crowd_[tool];
+  if (left_out_[tool] > 0) crowd = {std::floor(level_[tool]) + 1.0, -1.0, share_[tool]};
+  if (left_out_[tool] == 0 && crowd.area < 0.0) crowd.area = area;
+  if (area < less_area * crowd.area || share_[tool] > more_rows * crowd.share) crowd = {};
+  return crowd.level;
+}
+
 /// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
 PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size_t tool, int used,
-                                        double area) const noexcept {
+                                        double area) noexcept {
   if (!limits_.has_areas && left_out_[tool] > 0) return 1.0;
   if (!limits_.has_areas) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
-  const double wanted = level_for(samples, tool, area) - level_[tool];
+  const double wanted = std::max(level_for(samples, tool, area), least_with_rows(tool, area)) - level_[tool];
   return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
 }
 
@@ -106,6 +124,7 @@ PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const s
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
       level_[t] = first_[t];
+      crowd_[t] = {};
       continue;
     }
     level_[t] += step(samples, t, used[t], area[t]);
