@@ -319,3 +319,19 @@ TEST_CASE("NaN and infinity end the solve and are not reported as solved", "[con
       CHECK(no_lie);
     }
 }
+
+TEST_CASE("a row that a matrix without positive definiteness cannot close is reported",
+          "[contact][complementarity][extreme]") {
+  Problem p;
+  p.resize(2);
+  p.w(0, 0) = -1.0, p.w(1, 1) = 2.0, p.w(0, 1) = p.w(1, 0) = 0.0;
+  p.b[0] = -1.0, p.b[1] = -1.0;
+  p.lambda[0] = p.lambda[1] = 1.0;
+  CHECK(!p.solve());
+  CHECK((std::isfinite(p.lambda[0]) && p.lambda[0] >= 0.0));
+  // Two rows of one point: one has the force, the other is closed by it.
+  p.w(0, 0) = p.w(1, 1) = p.w(0, 1) = p.w(1, 0) = 1.0;
+  p.lambda[0] = p.lambda[1] = 1.0;
+  CHECK(p.solve());
+  CHECK_THAT(p.lambda[0] + p.lambda[1], Catch::Matchers::WithinRel(1.0, 1e-5));
+}

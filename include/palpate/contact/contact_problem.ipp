@@ -348,9 +348,10 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
-/// Whether a part of the force is at points that have only the compliance of the mesh, on facets that are too long: for
-/// the dent of the tool, or, where no error was measured, for the radius of the contact; or at one or two points, on
-/// facets so long that they have no more.
+/// Whether a part of the force is at points where the body is no half-space, or that have only the compliance of the
+/// mesh, on facets that are too long: for the dent of the tool, or, where no error was measured, for the radius of the
+/// contact; or at points that are too far apart for the thickness of the body; or at one or two points, on facets so
+/// long that they have no more.
 PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool, bool measured) const noexcept {
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
@@ -365,7 +366,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
     const double length = surface.facet_length(c.triangle);
     const bool has_too_few =
         few && length > ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing * tool.radius;
-    if (has_too_few || (!rows_.is_known(i) && length > longest)) on_coarse += c.force;
+    if (has_too_few || rows_.is_on_thin(i) || (!rows_.is_known(i) && length > longest)) on_coarse += c.force;
   }
   return on_coarse > most * all;
 }

@@ -51,7 +51,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
   first_.assign(1, 0);
   for (const Copy& copy : vertices) {
     HalfSpacePoint& p = vertices_.emplace_back(copy.origin >= 0 ? whole.vertex(copy.origin) : HalfSpacePoint{});
-    p.is_changed = copy.is_changed;
+    p.is_disturbed = p.is_disturbed || copy.is_changed;
     for (const Block& block : copy.origin >= 0 ? whole.blocks(copy.origin) : std::span<const Block>{})
       for (const int other : copies[at(block.vertex)]) blocks_.push_back({other, block.shown});
     first_.push_back(static_cast<int>(blocks_.size()));
@@ -61,21 +61,26 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
 
 PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
                                                         const Vector3& normal) const noexcept {
+  constexpr double beside = 0.25;  // of a facet
   HalfSpacePoint p;
   p.normal = normal;
+  double free = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const double weight = sample.weights[a];
     if (weight == 0.0) continue;
     const HalfSpacePoint& own = vertex(sample.vertices[a]);
-    if (!own.is_known() && !own.is_fixed) return {};
+    if (!own.is_known() && !own.is_fixed) return {.is_disturbed = own.is_disturbed};
+    if (!own.is_fixed) free += weight;
     p.body = own.body;
     p.position += weight * own.position;
     p.root += weight * own.root;
     p.poisson_ratio += weight * own.poisson_ratio;
     p.length += weight * own.length;
-    p.is_changed = p.is_changed || own.is_changed;
+    p.is_disturbed = p.is_disturbed || own.is_disturbed;
   }
   p.is_fixed = p.root == 0.0;
+  p.is_disturbed = p.is_disturbed || (free < 1.0 - 1e-9 && !p.is_fixed);
+  if (free > 0.0) p.root *= std::min(1.0, free / beside) / free;
   return p;
 }
 

@@ -46,11 +46,22 @@ PALPATE_INLINE bool ComplementarityProblem::solve_again() noexcept {
   }
   tolerance_ = 1e-12 * largest;
   pivots = 0;
-  const bool solved = sound && (pivot_blocks() || descend());
+  const bool solved = sound && (pivot_blocks() || descend()) && presses_where_it_penetrates();
   const bool finite = is_finite();
   if (solved && finite) return true;
   if (!sound || !finite) std::fill_n(lambda.begin(), rows_, 0.0);
   return false;
+}
+
+/// False where a row whose pivot was dropped penetrates without a force: it is no copy of another row, W is not
+/// positive definite there.
+PALPATE_INLINE bool ComplementarityProblem::presses_where_it_penetrates() const noexcept {
+  constexpr double allowed = 1e6;  // tolerances: a millionth of the largest gap
+  for (int p = 0; p < order_count_; ++p) {
+    const int i = order_[at(p)];
+    if (!bilateral[at(i)] && lambda[at(i)] == 0.0 && gap_[at(i)] < -allowed * tolerance_) return false;
+  }
+  return true;
 }
 
 PALPATE_INLINE bool ComplementarityProblem::is_finite() const noexcept {

@@ -45,7 +45,14 @@ class ContactRows {
   /// Whether the body at the point of a row is the half-space that its compliance assumes.
   bool is_known(int row) const noexcept {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
-    return (point.is_known() || point.is_fixed) && !point.is_changed;
+    return (point.is_known() || point.is_fixed) && !point.is_disturbed;
+  }
+  /// Whether the body at the point of a row is too thin: for facets that are longer, which is why the point has no
+  /// half-space, or for the area that the point stands for, when what is below takes most of its own compliance away.
+  /// After `build`.
+  bool is_on_thin(int row) const noexcept {
+    const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
+    return remaining_[at(row)] < 0.3 || (point.is_disturbed && !point.is_known() && !point.is_fixed);
   }
   /// The area that the rows with force of every tool stand for [m^2].
   std::array<double, maximum_tools> pressing_area() const noexcept;
@@ -135,7 +142,7 @@ class ContactRows {
     return p == q || has_copies_ ? with_self_compliance(tissue, points, i, j, compliance, workspace) : compliance;
   }
   const Matrix3& with_self_compliance(const TissueView& tissue, const Candidates& points, int i, int j,
-                                      const Matrix3& compliance, Matrix3& workspace) const noexcept;
+                                      const Matrix3& compliance, Matrix3& workspace) noexcept;
   inline void update_gaps() noexcept;
   inline Vector3 moved_point(int i, int pressing) const noexcept;
   inline Vector3 redirected_displacement(const TissueView& tissue, const Candidates& points, int i) noexcept;
@@ -156,6 +163,7 @@ class ContactRows {
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;
   std::vector<Vector3> response_;
+  std::vector<double> remaining_;         // compliance of a point by its own force, relative to that on a half-space
   std::vector<Vector3> redirected_;       // by remaining_change: change of a row's force by its new normal
   std::vector<Vector3> redirected_path_;  // by correct_normals: displacement of a row's point by the redirected parts
   std::vector<Vector3> shift_;            // displacement of a row's point by the forces redirected since `build`

@@ -19,6 +19,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       rows_(at(capacity)),
       candidate_(at(capacity)),
       response_(problem_.stride() * at(capacity)),
+      remaining_(at(capacity)),
       redirected_(at(capacity)),
       redirected_path_(at(capacity)),
       shift_(at(capacity)),
@@ -60,14 +61,16 @@ inline double ContactRows::set_responses(const double* c, const double* m, const
 /// Only of points at the same place: out of line, so that what is common is inlined.
 PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView& tissue, const Candidates& points,
                                                                 int i, int j, const Matrix3& compliance,
-                                                                Matrix3& workspace) const noexcept {
+                                                                Matrix3& workspace) noexcept {
   const Candidate &c = *candidate_[at(i)], &other = *candidate_[at(j)];
   if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
+  const double own = workspace.trace();
   if (tissue.rotates())
     workspace = (compliance_.rotation(c.slot) * workspace * compliance_.rotation(other.slot).transpose()).eval();
   workspace += compliance;
+  if (i == j) remaining_[at(i)] = workspace.trace() / own;
   return workspace;
 }
 
@@ -193,6 +196,7 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const Candidate
   has_copies_ = points.subfacet() != nullptr && points.subfacet()->has_copies();
   problem_.resize(count_);
   for (int i = first; i < count_; ++i) {
+    remaining_[at(i)] = 1.0;
     problem_.lambda[at(i)] = 1.0;  // it presses, or would penetrate
     shift_[at(i)].setZero();
     Contact& ci = rows_[at(i)];

@@ -17,7 +17,8 @@ struct HalfSpacePoint {
   double poisson_ratio = 0.0;          ///< nu
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
   int body = 0;                        ///< points of different bodies have nothing of each other
-  bool is_changed = false;             ///< the body near it is not that of this half-space any more: it was cut
+  bool is_disturbed = false;           ///< the body near it differs from a half-space: an edge, a support, another
+                                       ///< material or a cut
   bool is_fixed = false;               ///< its displacement along the normal is prescribed: `root` is 0
 
   bool is_known() const noexcept { return root > 0.0; }

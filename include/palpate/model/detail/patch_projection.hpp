@@ -47,6 +47,7 @@ class PatchProjection {
   void assemble(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release_cut_domains(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release(int domain, double bulk, const Vector3& mean_stress, const HalfSpaceField& field);
+  double support_below(NodeId middle, const Vector3& normal) const noexcept;
   bool solve_dense();
   const Matrix3& boundary_value(NodeId node, const HalfSpaceField& field);
 

@@ -138,6 +138,21 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
          good;
 }
 
+/// Distance of the nearest constrained node below the middle of the patch, in edges; infinite where there is none. What
+/// such nodes do to a dent changes within a facet if they are near, and then the compliance that remains without the
+/// half-space is not smooth: its sum with the half-space may not even be positive definite.
+PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
+  constexpr double below = 0.5;  // cosine of the angle from the inward normal
+  double nearest = infinity;
+  for (const NodeId n : patch_.nodes()) {
+    if (source_.constrained[static_cast<std::size_t>(n)] == 0) continue;
+    const Vector3 path = source_.position(n) - source_.position(middle);
+    if (const double distance = path.norm(); path.dot(normal) < -below * distance)
+      nearest = std::min(nearest, distance);
+  }
+  return nearest / source_.boundary.length(middle);
+}
+
 PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries,
                                            HalfSpaceMarks& marks) {
   const NodeId middle = source_.touched[static_cast<std::size_t>(vertex)];
@@ -145,6 +160,10 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   const UniformStiffness& stiffness = source_.stiffness[static_cast<std::size_t>(material.stiffness)];
   patch_.find(middle, normal);
   if (patch_.is_cut()) marks.set(HalfSpaceMark::near_edge);
+  constexpr double near = 1.3, too_near = 0.7;
+  const double support = support_below(middle, normal);
+  if (support < near) marks.set(HalfSpaceMark::near_support);
+  if (support < too_near) return marks.set(HalfSpaceMark::thin);
   const HalfSpaceField field(stiffness.shear_modulus, stiffness.poisson_ratio, normal);
   load_.compute(patch_, field, normal, right_);
   assemble(stiffness, field);

@@ -79,7 +79,11 @@ PALPATE_INLINE void HalfSpaceTable::project_vertex(PatchProjection& worker, int 
   const auto i = static_cast<std::size_t>(v);
   if (points_[i].root == 0.0) return;
   worker.solve(v, points_[i].normal, entries_[i], marks_[i]);
-  if (marks_[i].has(HalfSpaceMark::singular)) points_[i].root = 0.0;
+  const HalfSpaceMarks marks = marks_[i];
+  if (marks.has(HalfSpaceMark::singular) || marks.has(HalfSpaceMark::thin)) points_[i].root = 0.0;
+  for (const HalfSpaceMark mark : {HalfSpaceMark::sharp_edge, HalfSpaceMark::several_materials,
+                                   HalfSpaceMark::anisotropic, HalfSpaceMark::near_support})
+    points_[i].is_disturbed = points_[i].is_disturbed || marks.has(mark);
 }
 
 PALPATE_INLINE void HalfSpaceTable::project() {

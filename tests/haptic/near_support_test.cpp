@@ -1,0 +1,68 @@
+// Presses where supports are near: thin layers on a fixed base, and beside fixed parts of the touched surface.
+#include <palpate/element/smoothed.hpp>
+
+#include "contact/servo_session.hpp"
+
+#include "catch.hpp"
+
+#include <cmath>
+#include <numbers>
+
+using namespace palpate;
+
+namespace {
+
+using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
+
+struct Press {
+  double force;  // [N]
+  Status status;
+};
+
+/// A sphere pressed straight down on a plane at z = `top`, then still.
+Press press(Organ& organ, double radius, const Vector3& place, double top, double depth) {
+  ServoOptions options;
+  options.coupling_stiffness = infinity;
+  options.force_limits = test::open_gate();
+  HapticServo servo(organ, SphereTool{.radius = radius}, options);
+  Press result{};
+  for (int k = 0; k < 120; ++k) {
+    ToolState s;
+    s.position = place;
+    s.position[2] = top + radius - depth * std::min(1.0, k / 100.0);
+    s.time = 1e-3 * k;
+    result.status = servo.tick(s).status;
+  }
+  result.force = servo.contact_force()[2];
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a layer thinner than its facets on a fixed base: a force, with a flag", "[haptic][contact][extreme]") {
+  const double thickness = 1e-3, radius = 10e-3, depth = 0.1e-3;
+  const int cells = GENERATE(12, 8);
+  Scene scene;
+  scene.fix("z0").touch("z1", {.radius = radius});
+  Organ organ(box_tet4(Vector3(0.048, 0.048, thickness), {cells, cells, 1}, BoxSplit::six), scene,
+              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.3});
+  const Press p = press(organ, radius, Vector3(0.0247, 0.0244, 0.0), thickness, depth);
+  CHECK(p.force > 0.00073);  // that of a half-space
+  CHECK(p.status.has(StatusFlag::coarse_contact));
+}
+
+TEST_CASE("a support on the surface stiffens only presses close beside it", "[haptic][contact]") {
+  // The middle is three to eight radii of the contact beside the fixed half, within the facets at its border.
+  const double radius = GENERATE(4e-3, 8e-3), beside = GENERATE(3e-3, 4e-3), depth = radius / 50.0;
+  const int cells = GENERATE(10, 12, 20);
+  Scene scene;
+  scene.fix("z0").fix(where::box({-1.0, -1.0, 0.02 - 1e-6}, {0.03 + 1e-6, 1.0, 1.0}));
+  scene.touch(where::sphere({0.03 + beside, 0.03, 0.02}, 0.014), {.radius = radius});
+  Organ organ(box_tet4(Vector3(0.06, 0.06, 0.02), {cells, cells, cells / 3}, BoxSplit::six), scene,
+              LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
+  const Press p = press(organ, radius, Vector3(0.03 + beside, 0.0303, 0.0), 0.02, depth);
+  const double modulus = 5e3 / (1.0 - 0.45 * 0.45);
+  const double hertz = 4.0 / 3.0 * modulus * std::sqrt(radius * depth) * depth;
+  CAPTURE(radius, beside, cells, p.force / hertz);
+  CHECK(std::abs(p.force / hertz - 1.0) < 0.25);  // few points; 2 to 4 times Hertz before
+}
