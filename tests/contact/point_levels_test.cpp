@@ -6,6 +6,7 @@
 #include "catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 using namespace palpate;
@@ -18,11 +19,11 @@ constexpr double tip_radius = 4e-3;
 
 ContactSamples plane_of_samples() {
   test::Pad pad = test::make_pad("z1", 1e4, {16, 16, 2});
-  return {pad.contact_surface(), PointLevels::finest_spacing * tip_radius, PointLevels::coarsest_spacing * tip_radius};
+  return {pad.contact_surface(), PointLevels::finest_spacing * tip_radius, PointLevels::crowded_spacing * tip_radius};
 }
 
-/// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the points,
-/// relative to that of hexagons.
+/// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the
+/// points, relative to that of hexagons.
 Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity,
             double density = 1.0) {
   std::array<PointLevels::Size, maximum_tools> sizes;
@@ -120,4 +121,25 @@ TEST_CASE("a tool that rests keeps its level where the points of a finer one do 
     CHECK(std::abs(levels.level(0) - level) < 0.01);
     CHECK((left_out == 0 || left_out == 100));
   }
+}
+
+TEST_CASE("levels above the coarsest are for tools without rows for that; flat tools have coarser ones",
+          "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  const double coarsest = samples.level_with(PointLevels::coarsest_spacing * tip_radius);
+  const auto settled = [&](double scale, int capacity) {
+    PointLevels levels;
+    for (int i = 0; i < 200; ++i) {
+      const double area = 1e-4;
+      levels.begin_tick(samples, {{{tip_radius, scale}}}, {true}, {capacity, 18});
+      const int points = static_cast<int>(area / (0.866 * std::pow(samples.spacing(std::floor(levels.level(0))), 2)));
+      const int used = std::min(points, levels.share(0));
+      for (int k = used; k < points; ++k) levels.note_left_out(0, 1e-3);
+      levels.end_tick(samples, {used}, {area * used / points}, {});
+    }
+    return levels.level(0);
+  };
+  CHECK(std::abs(settled(tip_radius, 64) - coarsest) < 1e-6);
+  CHECK(settled(tip_radius, 24) > coarsest + 0.5);
+  CHECK(settled(2.0 * tip_radius, 64) > coarsest + 0.5);
 }

@@ -15,11 +15,12 @@ inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 
 inline constexpr int largest_default_capacity =
     default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1);
 
-/// Sizes of the tools of a session [m]: the smallest radius, and the largest `ContactTool::point_scale`.
+/// Radii of the tools of a session [m].
 struct ToolRadii {
   double smallest, largest;
-  ToolRadii(double radius) noexcept : smallest(radius), largest(radius) {}  // NOLINT(google-explicit-constructor)
-  ToolRadii(double least, double most) noexcept : smallest(least), largest(most) {}
+  double largest_scale;                                             ///< ContactTool::point_scale
+  ToolRadii(double radius) noexcept : ToolRadii(radius, radius) {}  // NOLINT(google-explicit-constructor)
+  ToolRadii(double least, double most) noexcept : smallest(least), largest(most), largest_scale(most) {}
   friend bool operator==(const ToolRadii&, const ToolRadii&) = default;
 };
 

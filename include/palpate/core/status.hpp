@@ -17,7 +17,8 @@ enum class StatusFlag : std::uint32_t {
   stale = 1u << 3,                 ///< input older than allowed: force is faded to zero
   deadline_missed = 1u << 4,       ///< the tick came later than its period allows
   inverted = 1u << 5,              ///< an element is inverted (non-linear models)
-  solver_not_converged = 1u << 6,  ///< contact or linear solver stopped at its iteration limit
+  solver_not_converged = 1u << 6,  ///< contact or linear solver stopped at its iteration limit; or the force goes back
+                                   ///< and forth from tick to tick although no device moves
   energy_injected = 1u << 7,       ///< the energy tank is nearly empty: forces are scaled down
   degraded_model = 1u << 8,        ///< something was omitted to stay within bounds (contact capacity, late compliance)
   disconnected = 1u << 9,          ///< the device reports invalid data
@@ -28,7 +29,8 @@ enum class StatusFlag : std::uint32_t {
   energy_grew = 1u << 14,          ///< a motion gained energy without a source: it is kept at its last good state
   slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
-                              ///< or the error of the force is above a tenth of it, as measured or by the facets
+                              ///< or the error of the force is above a tenth of it, as measured or by the facets;
+                              ///< or an edge, a support or another material is near, and facets do not show it
   large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
   lost_contact = 1u << 18,       ///< the tool is inside the tissue: it passed through the surface, or entered where the
                                  ///< body cannot be touched; its force is zero, or points the wrong way

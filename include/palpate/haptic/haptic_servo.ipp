@@ -21,7 +21,9 @@ inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   ToolRadii radii(no_sphere, 0.0);
   for (const ContactTool& tool : tools) {
     radii.smallest = std::min(radii.smallest, tool.radius);
-    if (tool.radius < no_sphere) radii.largest = std::max(radii.largest, tool.point_scale());
+    if (!(tool.radius < no_sphere)) continue;
+    radii.largest = std::max(radii.largest, tool.radius);
+    radii.largest_scale = std::max(radii.largest_scale, tool.point_scale());
   }
   return radii;
 }

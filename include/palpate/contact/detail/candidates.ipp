@@ -177,13 +177,13 @@ PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, cons
 
 PALPATE_INLINE std::span<const int> Candidates::within(const std::array<double, maximum_tools>& reach,
                                                        std::span<const ContactTool> tools) noexcept {
-  constexpr double further = 0.1;  // radii
+  constexpr double extra = 0.1;  // radii
   bool known = near_count_ >= 0;
   for (std::size_t t = 0; t < tools.size(); ++t)
     known = known && (!tools[t].active || reach[t] + (travel(t) - near_travel_[t]) <= near_range_[t]);
   if (!known) {
     for (std::size_t t = 0; t < tools.size(); ++t) {
-      near_range_[t] = reach[t] + further * tools[t].radius;
+      near_range_[t] = reach[t] + extra * tools[t].radius;
       near_travel_[t] = travel(t);
     }
     near_count_ = 0;

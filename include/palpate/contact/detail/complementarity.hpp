@@ -63,7 +63,7 @@ class ComplementarityProblem {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   bool is_finite() const noexcept;
-  bool presses_where_it_penetrates() const noexcept;
+  bool closes_active() const noexcept;
   bool pivot_blocks() noexcept;
   bool descend() noexcept;
   bool step() noexcept;

@@ -46,20 +46,20 @@ PALPATE_INLINE bool ComplementarityProblem::solve_again() noexcept {
   }
   tolerance_ = 1e-12 * largest;
   pivots = 0;
-  const bool solved = sound && (pivot_blocks() || descend()) && presses_where_it_penetrates();
+  const bool solved = sound && (pivot_blocks() || descend()) && closes_active();
   const bool finite = is_finite();
   if (solved && finite) return true;
   if (!sound || !finite) std::fill_n(lambda.begin(), rows_, 0.0);
   return false;
 }
 
-/// False where a row whose pivot was dropped penetrates without a force: it is no copy of another row, W is not
-/// positive definite there.
-PALPATE_INLINE bool ComplementarityProblem::presses_where_it_penetrates() const noexcept {
+/// False where a row whose pivot was dropped stays open without a force: W is not positive definite there.
+PALPATE_INLINE bool ComplementarityProblem::closes_active() const noexcept {
   constexpr double allowed = 1e6;  // tolerances: a millionth of the largest gap
   for (int p = 0; p < order_count_; ++p) {
     const int i = order_[at(p)];
-    if (!bilateral[at(i)] && lambda[at(i)] == 0.0 && gap_[at(i)] < -allowed * tolerance_) return false;
+    const double open = bilateral[at(i)] ? std::abs(gap_[at(i)]) : -gap_[at(i)];
+    if (lambda[at(i)] == 0.0 && open > allowed * tolerance_) return false;
   }
   return true;
 }
@@ -187,8 +187,8 @@ inline std::array<const double*, 4> ComplementarityProblem::columns(int p, int q
   return {&factor_[place(p, q)], &factor_[place(p, q + 1)], &factor_[place(p, q + 2)], &factor_[place(p, q + 3)]};
 }
 
-/// Solves W_aa answer = -b_a for answer_, in the order of order_. A pivot lost to rounding drops its row (the point
-/// coincides with another).
+/// Solves W_aa answer = -b_a for answer_, in the order of order_. A pivot that is not positive, or lost to
+/// rounding, drops its row.
 PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   const int m = order_count_;
   if (factored_ == 0) factor_all();

@@ -50,7 +50,7 @@ class ContactRows {
   /// Whether the body at the point of a row is too thin: for facets that are longer, which is why the point has no
   /// half-space, or for the area that the point stands for, when what is below takes most of its own compliance away.
   /// After `build`.
-  bool is_on_thin(int row) const noexcept {
+  bool is_on_thin_body(int row) const noexcept {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
     return remaining_[at(row)] < 0.3 || (point.is_disturbed && !point.is_known() && !point.is_fixed);
   }
@@ -158,7 +158,8 @@ class ContactRows {
   double floor_ = 0.0, longest_path_ = 0.0;
   double alternation_change_ = 0.0;  // of a normal force in the last turn of slide, relative to the largest one
   std::uint64_t tick_ = 0;
-  bool has_copies_ = false;  // different vertices may be at the same place
+  std::array<std::uint64_t, maximum_tools> pressed_tick_{};  // the last one in which a tool had friction
+  bool has_copies_ = false;                                  // different vertices may be at the same place
   PointCompliance compliance_;
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;

@@ -113,6 +113,7 @@ PALPATE_INLINE void ContactRows::reset() noexcept {
   clear();
   compliance_.reset();
   pressing_force_.fill(0.0);
+  pressed_tick_.fill(0);
   tick_ = 0;
 }
 

@@ -10,10 +10,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A point at the rim of a contact may press in every other tick: it keeps its anchor over one tick without force. With
-/// a new anchor each time, its friction force would come and go, and with it the normal forces.
+/// A point at the rim of a contact may press in every other tick: while its tool presses, it keeps its anchor over one
+/// tick without force. With a new anchor each time, its friction force would come and go, and with it the normal
+/// forces.
 inline bool ContactRows::sticks(const Candidate& c) const noexcept {
-  return c.stuck_tick != 0 && c.stuck_tick + 2 >= tick_;
+  if (c.stuck_tick == 0) return false;
+  return c.stuck_tick + 1 == tick_ || (c.stuck_tick + 2 == tick_ && pressed_tick_[at(c.tool)] + 1 == tick_);
 }
 
 PALPATE_INLINE void ContactRows::inherit_friction(const ContactTool& tool, Candidate& c) const noexcept {
@@ -128,6 +130,7 @@ PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexc
     const ContactTool& tool = tools[at(c.tool)];
     if (!kept) c.anchor = tool.rotation.transpose() * (rows_[at(i)].point - tool.proxy);
     c.stuck_tick = tick_;
+    pressed_tick_[at(c.tool)] = tick_;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -15,9 +16,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// higher level at once. What one tool does not need of the rows is for the others. No allocation.
 class PointLevels {
  public:
-  static constexpr double finest_spacing = 0.125;   ///< of points, in radii
-  static constexpr double coarsest_spacing = 0.5;   ///< in ContactTool::point_scale
-  static constexpr double crowded_spacing = 0.708;  ///< the same where a tool has no rows for the coarsest one
+  static constexpr double finest_spacing = 0.125;                                    ///< of points, in radii
+  static constexpr double coarsest_spacing = 0.5;                                    ///< in ContactTool::point_scale
+  static constexpr double crowded_spacing = std::numbers::sqrt2 * coarsest_spacing;  ///< without rows for that
   /// Of a tool that does not press: it begins to press when it is a hundredth of its radius in the surface, or earlier.
   static constexpr double first_spacing = 0.25;
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
@@ -70,15 +71,15 @@ class PointLevels {
   double least_with_rows(std::size_t tool, double area) noexcept;
   double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
 
-  std::array<int, maximum_tools> share_{}, needed_{}, left_out_{}, skipped_{};
+  std::array<int, maximum_tools> share_{}, had_{}, needed_{}, left_out_{}, skipped_{};
   std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{}, crowded_{};
   /// The last time that the points of a tool did not fit.
-  struct Crowd {
+  struct Overflow {
     double level = 0.0;  ///< at which they fit
     double area = -1.0;  ///< that pressed there [m^2]; negative: not known yet
     int share = 0;       ///< rows; 0: never
   };
-  std::array<Crowd, maximum_tools> crowd_{};
+  std::array<Overflow, maximum_tools> overflow_{};
   double deepest_ = 0.0;
   Limits limits_;
 };

@@ -23,7 +23,8 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const
     first_[t] = has_areas ? samples.level_with(first_spacing * radius) : 0.0;
     most_[t] =
         std::max(least_[t], samples.level_with(has_areas ? coarsest_spacing * scale : coarsest_of_mesh * radius));
-    crowded_[t] = has_areas ? std::max(most_[t], samples.level_with(crowded_spacing * scale)) : most_[t];
+    const double crowded = (1.0 + ContactSamples::rounding) * crowded_spacing * scale;
+    crowded_[t] = has_areas ? std::max(most_[t], samples.level_with(crowded)) : most_[t];
     if (begins) level_[t] = first_[t];
     level_[t] = std::clamp(level_[t], least_[t], crowded_[t]);
   }
@@ -100,11 +101,11 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
 /// again.
 PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, double area) noexcept {
   constexpr double less_area = 0.8, more_rows = 1.25;
-  Crowd& crowd = crowd_[tool];
-  if (left_out_[tool] > 0) crowd = {std::floor(level_[tool]) + 1.0, -1.0, share_[tool]};
-  if (left_out_[tool] == 0 && crowd.area < 0.0) crowd.area = area;
-  if (area < less_area * crowd.area || share_[tool] > more_rows * crowd.share) crowd = {};
-  return crowd.level;
+  Overflow& overflow = overflow_[tool];
+  if (left_out_[tool] > 0) overflow = {std::floor(level_[tool]) + 1.0, -1.0, had_[tool]};
+  if (left_out_[tool] == 0 && overflow.area < 0.0) overflow.area = area;
+  if (area < less_area * overflow.area || share_[tool] > more_rows * overflow.share) overflow = {};
+  return overflow.level;
 }
 
 /// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
@@ -119,12 +120,13 @@ PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size
 PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
                                           const std::array<double, maximum_tools>& area,
                                           const std::array<int, maximum_tools>& grasped) noexcept {
+  had_ = share_;
   for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t] + grasped[t];
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
       level_[t] = first_[t];
-      crowd_[t] = {};
+      overflow_[t] = {};
       continue;
     }
     level_[t] += step(samples, t, used[t], area[t]);

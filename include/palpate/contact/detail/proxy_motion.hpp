@@ -20,11 +20,6 @@ class ProxyMotion {
     double farthest = 0.0;           ///< upper bound of the displacement of any of its points [m]
   };
 
-  ProxyMotion() noexcept {
-    last_force_.fill(Vector3::Zero());
-    last_change_.fill(Vector3::Zero());
-  }
-
   /// Moves the proxies with their devices, perpendicular to the contact force: this makes the first linearisation
   /// nearly exact for a sphere that slides.
   static void slide(Tools tools) noexcept;
@@ -48,22 +43,28 @@ class ProxyMotion {
   /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
   /// not converged although the devices hardly move, steps become shorter, until a device moves, or nothing presses.
   /// They also become longer again, after a time that doubles with every failure: shorter steps cost more of them.
-  /// Returns whether the forces alternate from tick to tick although no device moves: every tick converges, to another
-  /// state than the one before.
-  bool end_tick(Tools tools, bool converged) noexcept;
+  /// Returns whether the forces go back and forth from tick to tick although no device moves: every tick converges, to
+  /// another state than the one before. `scale`: of the forces [N], as for `relative_change`.
+  bool end_tick(Tools tools, bool converged, double scale) noexcept;
 
  private:
   static constexpr int patience = 8;                          // ticks
   static constexpr int first_wait = 32, longest_wait = 4096;  // ticks with shorter steps before longer ones are tried
   static constexpr double least_part = 0.125, still = 0.01;   // still: path of a device in a tick, radii
-  static constexpr double rests = 1e-4;                       // the same: it does not change the force
+  static constexpr double resting = 1e-4;                     // the same: it does not change the force
   static constexpr double alternating = 0.01;                 // change of a force per tick, back and forth, relative
   inline static double allowed_part(const ContactTool& tool, double path) noexcept;
   static void rotate(ContactTool& tool, double part) noexcept;
-  bool alternates(Tools tools) noexcept;
+  bool alternates(Tools tools, double scale) noexcept;
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
-  std::array<Vector3, maximum_tools> last_force_, last_change_;  // of the last tick; a change while devices rest
+  /// Of a tool at the end of the last tick.
+  struct Last {
+    Vector3 force = Vector3::Zero(), target = Vector3::Zero();
+    Vector3 change = Vector3::Zero();  ///< of the force, while devices rest
+    int reversals = 0;                 ///< of that change, in turn
+  };
+  std::array<Last, maximum_tools> last_{};
   std::array<bool, maximum_tools> active_{};
   std::array<Ahead, maximum_tools> ahead_{};
   double longest_part_ = 1.0;  // of a step

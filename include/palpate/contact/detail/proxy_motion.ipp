@@ -101,24 +101,26 @@ PALPATE_INLINE double ProxyMotion::relative_change(Tools tools, double scale) co
   return change > 0.0 ? change / scale : 0.0;
 }
 
-/// Updates the changes of the forces from tick to tick while devices rest. Back and forth: the change is opposite to
-/// the one before. A slip, once, is not.
-PALPATE_INLINE bool ProxyMotion::alternates(Tools tools) noexcept {
-  const bool rest = std::all_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
-    return !tool.active || tool.path_length() <= rests * tool.radius;
-  });
-  bool any = false;
+/// Twice in turn a change that is opposite to the one before: a slip that rebounds, or a tick without a reading, is
+/// not.
+PALPATE_INLINE bool ProxyMotion::alternates(Tools tools, double scale) noexcept {
+  bool rest = true, any = false;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const Vector3 change = rest ? Vector3(tools[t].force - last_force_[t]) : Vector3(Vector3::Zero());
-    const double least = alternating * tools[t].force.norm();
-    any = any || (std::min(change.norm(), last_change_[t].norm()) > least && change.dot(last_change_[t]) < 0.0);
-    last_force_[t] = tools[t].force;
-    last_change_[t] = change;
+    const double path = (tools[t].target - last_[t].target).norm();
+    rest = rest && (!tools[t].active || std::max(path, tools[t].end_path) <= resting * tools[t].radius);
+  }
+  const double least = alternating * scale;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    Last& last = last_[t];
+    const Vector3 change = rest ? Vector3(tools[t].force - last.force) : Vector3(Vector3::Zero());
+    const bool reverses = std::min(change.norm(), last.change.norm()) > least && change.dot(last.change) < 0.0;
+    last = {tools[t].force, tools[t].target, change, reverses ? last.reversals + 1 : 0};
+    any = any || last.reversals > 1;
   }
   return any;
 }
 
-PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged) noexcept {
+PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged, double scale) noexcept {
   const bool moves = std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
     return tool.active && tool.path_length() > still * tool.radius;
   });
@@ -140,7 +142,7 @@ PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged) noexcept 
     wait_ = std::min(2 * wait_, longest_wait);
   }
   took_whole_step_ = false;
-  return alternates(tools);
+  return alternates(tools, scale);
 }
 
 }}  // namespace palpate

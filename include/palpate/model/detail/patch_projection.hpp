@@ -39,8 +39,9 @@ class PatchProjection {
   /// Keeps references.
   PatchProjection(const HalfSpaceSource& source, const ColumnBlocks& columns);
 
-  /// Fills `entries` with the touched vertices among the free nodes, by vertex, and sets marks. Leaves it empty when
-  /// there is no solution: a pivot that is not positive, or a residual above 1e-8.
+  /// Fills `entries` with the touched vertices among the free nodes, by vertex, and sets marks. Leaves it empty
+  /// above a support that is too near, and when there is no solution: a pivot that is not positive, or a residual above
+  /// 1e-8.
   void solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries, HalfSpaceMarks& marks);
 
  private:

@@ -13,6 +13,18 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+/// Whether the components that are prescribed, a bit each, have more than half of the normal.
+inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexcept {
+  double part = 0.0;
+  for (int c = 0; c < 3; ++c)
+    if ((components >> c & 1) != 0) part += normal[c] * normal[c];
+  return part > 0.5;
+}
+
+}  // namespace detail
+
 PALPATE_INLINE ColumnBlocks::ColumnBlocks(const BlockPattern& pattern)
     : first_(static_cast<std::size_t>(pattern.rows()) + 1, 0) {
   const auto for_each = [&](auto&& visit) {
@@ -138,19 +150,22 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
          good;
 }
 
-/// Distance of the nearest constrained node below the middle of the patch, in edges; infinite where there is none. What
-/// such nodes do to a dent changes within a facet if they are near, and then the compliance that remains without the
-/// half-space is not smooth: its sum with the half-space may not even be positive definite.
+/// Depth of the nearest node below the middle of the patch that is fixed along the normal, in edges; infinite where
+/// there is none. What such nodes do to a dent changes within a facet if they are near, and then the compliance that
+/// remains without the half-space is not smooth: its sum with the half-space may not even be positive definite. Nodes
+/// beside the middle count up to an edge: on a mesh without order none may be straight below.
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
-  constexpr double below = 0.5;  // cosine of the angle from the inward normal
+  constexpr double beside = 1.2, surface = 0.05;  // edges
+  const double length = source_.boundary.length(middle);
   double nearest = infinity;
   for (const NodeId n : patch_.nodes()) {
-    if (source_.constrained[static_cast<std::size_t>(n)] == 0) continue;
+    if (!detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)])) continue;
     const Vector3 path = source_.position(n) - source_.position(middle);
-    if (const double distance = path.norm(); path.dot(normal) < -below * distance)
-      nearest = std::min(nearest, distance);
+    const double depth = -path.dot(normal);
+    if (depth > surface * length && (path + depth * normal).norm() < beside * length)
+      nearest = std::min(nearest, depth);
   }
-  return nearest / source_.boundary.length(middle);
+  return nearest / length;
 }
 
 PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries,
