@@ -37,9 +37,9 @@ struct HalfSpaceMarks {
 /// rows.
 ///
 /// A point between vertices is a HalfSpacePoint with the weighted means of root, Poisson ratio and length, and the
-/// normal of its facets (SubfacetCompliance::point). Vertices without a solution, and those above a support that is very
-/// near, have root 0 and no blocks, so that their points keep the compliance C. So have vertices that are fixed along
-/// the normal, which do not keep their neighbours' points from theirs.
+/// normal of its facets (SubfacetCompliance::point). Vertices without a solution, and those above a support that is
+/// very near, have root 0 and no blocks, so that their points keep the compliance C. So have vertices that are fixed
+/// along the normal, which do not keep their neighbours' points from theirs.
 class ProjectedHalfSpace {
  public:
   /// Rows of the lower half, the columns of each ascending.
