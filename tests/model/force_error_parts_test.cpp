@@ -189,7 +189,7 @@ TEST_CASE("a force with fewer rows than contacts differs by less than the part f
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const double error = std::abs(press[i].force - truth[i].force), bound = press[i].error.parts.merged;
       CAPTURE(capacity, i, truth[i].force, press[i].force, bound);
-      CHECK(truth[i].error.parts.merged < 0.015 * truth[i].force);
+      CHECK(truth[i].error.parts.merged < 0.03 * truth[i].force);
       CHECK(error <= bound + truth[i].error.parts.merged);
       most = std::max(most, error / truth[i].force);
     }
