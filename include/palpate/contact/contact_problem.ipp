@@ -358,7 +358,11 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
   double longest = tool.radius / coarse, all = 0.0, on_coarse = 0.0;
-  const bool few = error_of_points(t) > coarse_error;
+  int points = 0;  // with an area
+  for (int i = 0; i < rows_.count(); ++i)
+    if (const Candidate& c = rows_.candidate(i); c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0)
+      points += rows_.has_area(i);
+  const bool few = points == 1 || points == 2;
   if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
   for (int i = 0; i < rows_.count(); ++i) {
     const Candidate& c = rows_.candidate(i);

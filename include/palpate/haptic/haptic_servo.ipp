@@ -280,7 +280,7 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
 /// has passed, or presses beyond the rim. Remains true until no such facet pushes and the tool is outside the deformed
 /// body. Call it at the end of a tick, after `recover`.
 PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
-  constexpr double most_from_behind = 0.1, most_on_rim = 0.15;
+  constexpr double most_from_behind = 0.1, most_on_rim = 0.2;
   const ContactTool& tool = contact_tools_[i];
   if (!tool.active) return false;
   if (detail::is_zero(tool.force))
