@@ -26,6 +26,18 @@ class ColumnBlocks {
   std::vector<Block> block_;
 };
 
+namespace detail {
+
+/// Whether the components that are prescribed, a bit each, have more than half of the normal.
+inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexcept {
+  double part = 0.0;
+  for (int c = 0; c < 3; ++c)
+    if ((components >> c & 1) != 0) part += normal[c] * normal[c];
+  return part > 0.5;
+}
+
+}  // namespace detail
+
 /// The compliance of a touched vertex to the force on the vertex in the middle of a patch.
 struct PatchEntry {
   int vertex;

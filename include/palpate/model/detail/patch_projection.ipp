@@ -13,18 +13,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-namespace detail {
-
-/// Whether the components that are prescribed, a bit each, have more than half of the normal.
-inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexcept {
-  double part = 0.0;
-  for (int c = 0; c < 3; ++c)
-    if ((components >> c & 1) != 0) part += normal[c] * normal[c];
-  return part > 0.5;
-}
-
-}  // namespace detail
-
 PALPATE_INLINE ColumnBlocks::ColumnBlocks(const BlockPattern& pattern)
     : first_(static_cast<std::size_t>(pattern.rows()) + 1, 0) {
   const auto for_each = [&](auto&& visit) {
