@@ -76,11 +76,10 @@ class Touching {
   }
   int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
 
-  /// Keeps the tool fixed and measures, relative to the depth, the larger of two errors, neither of which sees the
-  /// half-space between facets (tests compare that with closed forms): the distance of the points
+  /// Keeps the tool fixed and measures, relative to the depth, the larger of two errors: the distance of the points
   /// that press from the sphere, and the difference between the displacement of their vertices by the stored compliance
-  /// and that of the whole body under the same forces. Median of five positions: occasionally a contact on a rough
-  /// surface takes long to settle.
+  /// and that of the whole body under the same forces. The half-space between facets is not checked here: tests compare
+  /// it with closed forms. Median of five positions: occasionally a contact on a rough surface takes long to settle.
   double gap_error() {
     std::vector<double> gaps;
     for (int i = 0; i < 5; ++i) gaps.push_back(settled_gap());

@@ -31,8 +31,8 @@ inline std::vector<NodeId> underside(const Mesh<Tet4>& mesh) {
   return nodes;
 }
 
-/// A 4 mm probe. The triangles of the patch are 4 mm long, too long for it: the set-up measures how far its forces are
-/// in error, and every tick has an error bar.
+/// A 4 mm probe on a patch of triangles that are 4 mm long. The set-up measures how far its forces are in error, and
+/// every tick has an error bar.
 inline constexpr SphereTool tool{.radius = 4e-3};
 
 /// Conditions refer to a named group of the mesh file or to a list of nodes. There is no gravity here: the mesh is the

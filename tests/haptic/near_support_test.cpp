@@ -43,7 +43,7 @@ Press press(Organ& organ, double radius, const Vector3& place, double top, doubl
 TEST_CASE("a layer thinner than its facets on a fixed base: a force, with a flag", "[haptic][contact][extreme]") {
   const double thickness = 1e-3, radius = 10e-3, depth = 0.1e-3;
   const int cells = GENERATE(24, 12, 8);
-  const double jitter = GENERATE(0.0, 0.3);  // of a cell: no node is straight below another
+  const double jitter = GENERATE(0.0, 0.3);  // of a cell: few nodes are straight below another
   Scene scene;
   scene.fix("z0").touch("z1", {.radius = radius});
   Mesh<Tet4> mesh = box_tet4(Vector3(0.048, 0.048, thickness), {cells, cells, 1}, BoxSplit::six);
@@ -59,7 +59,7 @@ TEST_CASE("a layer thinner than its facets on a fixed base: a force, with a flag
 }
 
 TEST_CASE("a layer as thick as its facets are long is right or flagged", "[haptic][contact][extreme]") {
-  // Truth: the same layer with six cells through its thickness, facets of a third of it.
+  // Truth: the same layer with four cells through its thickness and facets of a third of it.
   const double thickness = 4e-3, radius = GENERATE(4e-3, 10e-3), depth = 0.4e-3;
   const auto force_with = [&](int cells, int layers) {
     Scene scene;

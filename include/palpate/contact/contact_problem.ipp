@@ -357,28 +357,29 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
                                                           const ContactTool& tool, bool measured) const noexcept {
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
-  double longest = tool.radius / coarse, all = 0.0, on_coarse = 0.0;
-  int points = 0;  // with an area
-  for (int i = 0; i < rows_.count(); ++i)
-    if (const Candidate& c = rows_.candidate(i); c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0)
-      points += rows_.has_area(i);
-  const bool few = points == 1 || points == 2;
+  constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
+  double longest = tool.radius / coarse;
   if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
+  double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
+  int points = 0;  // with an area
   for (int i = 0; i < rows_.count(); ++i) {
     const Candidate& c = rows_.candidate(i);
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
+    points += rows_.has_area(i);
     const double length = surface.facet_length(c.triangle);
-    const bool has_too_few =
-        few && length > ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing * tool.radius;
-    if (has_too_few || rows_.is_on_thin_body(i) || (!rows_.is_known(i) && length > longest)) on_coarse += c.force;
+    if (rows_.is_on_thin_body(i) || (!rows_.is_known(i) && length > longest))
+      on_coarse += c.force;
+    else if (length > very_long * tool.radius)
+      on_very_long += c.force;
   }
+  if (points == 1 || points == 2) on_coarse += on_very_long;
   return on_coarse > most * all;
 }
 
 /// What a contact of so few points may be in error, relative to the force: measured with spheres on meshes whose nodes
 /// were renumbered, which have other points, and with few rows: up to 7 % with ten, 2 % with twenty. Their number is
-/// that of whole points of the level in the area that presses; between two levels some have faded out nearly. Points
+/// that of whole points of the level in the area that presses; between two levels some have almost faded out. Points
 /// without half-space have no area, and stand for themselves.
 PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexcept {
   constexpr double factor = 8.0, hexagon = 0.866;

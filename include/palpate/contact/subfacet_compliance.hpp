@@ -61,8 +61,8 @@ class SubfacetCompliance {
   }
 
   /// A point of the surface with this normal; not known unless all of its vertices are known or fixed. Beside fixed
-  /// vertices it has the half-space of the others: a dent that is small for the facet does not feel them. Within the
-  /// last quarter of the facet the half-space gets stiffer, and between fixed vertices there is none.
+  /// vertices it has the half-space of the others: they do not affect a dent that is small for the facet. Within
+  /// the last quarter of the facet the half-space gets stiffer, and between fixed vertices there is none.
   HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
   /// chi G of two different points; zero where one is not known [m/N].
   static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;

@@ -86,7 +86,7 @@ class EdgeCrossings {
 /// exactly the same point; returns 1 if the order is that of the triangle, -1 if it is the opposite one.
 inline int sort_corners(std::array<const Vector3*, 3>& corner) noexcept {
   int sense = 1;
-  for (const std::size_t i : {0, 1, 0}) {
+  for (const std::size_t i : {0u, 1u, 0u}) {
     const Vector3 &a = *corner[i], &b = *corner[i + 1];
     if (!std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3)) continue;
     std::swap(corner[i], corner[i + 1]);

@@ -141,7 +141,7 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
 /// Depth of the nearest node below the middle of the patch that is fixed along the normal, in edges; infinite where
 /// there is none. What such nodes do to a dent changes within a facet if they are near, and then the compliance that
 /// remains without the half-space is not smooth: its sum with the half-space may not even be positive definite. Nodes
-/// beside the middle count up to an edge: on a mesh without order none may be straight below.
+/// up to about an edge aside count too: in an unstructured mesh none may be straight below.
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
   constexpr double beside = 1.2, surface = 0.05;  // edges
   const double length = source_.boundary.length(middle);
