@@ -153,7 +153,7 @@ TEST_CASE("a sphere on a floor that touches a wall is pushed by both as by each 
     const Vector3 force = tick(corner, 1e-3 * i, position);
     const Vector3 sum = tick(on_floor, 1e-3 * i, position) + tick(at_wall, 1e-3 * i, position);
     CAPTURE(i, force.transpose(), sum.transpose());
-    CHECK((force - sum).norm() <= 0.07 * sum.norm() + 1e-6);
+    CHECK((force - sum).norm() <= 0.02 * sum.norm() + 1e-6);
     largest = std::max(largest, -force[0]);
   }
   CHECK(largest > 1e-3);

@@ -200,7 +200,7 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
     const bool is_shallow = tool.outward.squaredNorm() == 0.0 || !tool.has_cone();
     if (is_shallow) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
     tool.entered = -infinity;
-    constexpr double facing = 0.5;
+    constexpr double facing = 0.8;  // 37 degrees: not two walls of a corner
     for (int i = 0; i < rows_.count(); ++i) {
       const Contact& c = rows_.contacts()[at(i)];
       if (presses(c) && surface.normal(rows_.candidate(i).triangle).dot(tool.outward) > facing)
@@ -710,7 +710,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
-    if (gap > candidates_.longest_move(tissue, tool, displacement_, c)) continue;
+    if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
     gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
     if (!(gap < -allowed)) continue;
     if (is_finer)

@@ -52,6 +52,8 @@ class Candidates {
   void forget() noexcept { valid_ = false; }
   /// Back to the state after construction.
   void reset() noexcept;
+  /// Whether the list has all points that a tool may reach.
+  bool is_complete(std::size_t t, const ContactTool& tool) const noexcept;
   /// Whether the last update rebuilt the list: candidates have moved in memory.
   bool is_new() const noexcept { return is_new_; }
   /// Whether a force of the previous list is missing in the last list because its tool was lifted. The surface then
@@ -107,8 +109,7 @@ class Candidates {
   const Vector3& position(const TissueView& tissue, SurfaceDisplacement& displacement, Candidate& c) const noexcept;
   /// Upper bound of how far its point has moved along its normal since it was placed; infinite where `position` costs
   /// as little [m].
-  double longest_move(const TissueView& tissue, const ContactTool& tool, SurfaceDisplacement& displacement,
-                      const Candidate& c) const noexcept;
+  double longest_move(const TissueView& tissue, SurfaceDisplacement& displacement, const Candidate& c) const noexcept;
   /// Sets the position of a candidate's point and updates its gap and normal.
   inline void place(Candidate& c, const Vector3& point, const ContactTool& tool) const noexcept;
 
@@ -170,6 +171,7 @@ class Candidates {
                    SurfaceDisplacement& displacement) noexcept;
   inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
                                           const ContactSample& sample) noexcept;
+  Vector3 without_half_space(const TissueView& tissue, SurfaceDisplacement& displacement, int sample) const noexcept;
   inline double known_gap(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;

@@ -158,18 +158,26 @@ PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, Sur
   return c.moved_to;
 }
 
-PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, const ContactTool& tool,
-                                               SurfaceDisplacement& displacement, const Candidate& c) const noexcept {
+/// Where the half-space dents the surface, the point is farther from the tools than this.
+PALPATE_INLINE Vector3 Candidates::without_half_space(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                                      int number) const noexcept {
+  const ContactSample& sample = samples_[number];
+  if (!half_space_point(number).is_known()) return place_by_vertices(tissue, displacement, sample);
+  return rest(tissue.contact_surface(), sample) + displacement.without_half_space(tissue, *subfacet_, sample);
+}
+
+PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                               const Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return infinity;
-  const Vector3 moved = place_by_vertices(tissue, displacement, sample_of(c)) - c.point;
-  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_, tool.radius);
+  const Vector3 moved = without_half_space(tissue, displacement, c.sample) - c.point;
+  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_);
 }
 
 PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, const ContactTool& tool,
                                                   SurfaceDisplacement& displacement, Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return -infinity;
-  const double distance = tool.closest(place_by_vertices(tissue, displacement, sample_of(c))).distance;
-  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_, tool.radius));
+  const double distance = tool.closest(without_half_space(tissue, displacement, c.sample)).distance;
+  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_));
   c.seen = travel(static_cast<std::size_t>(c.tool));
   c.evaluated = false;
   return c.gap;

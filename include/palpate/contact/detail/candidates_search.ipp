@@ -14,6 +14,10 @@ inline double Candidates::needed(const ContactTool& tool) noexcept {
   return tool.longest_step() + 0.5 * tool.path_length();
 }
 
+PALPATE_INLINE bool Candidates::is_complete(std::size_t t, const ContactTool& tool) const noexcept {
+  return list_.range[t] >= needed(tool);
+}
+
 /// Part of the margin of a list that is used up, the largest of all tools; above 1 the list may miss points.
 PALPATE_INLINE double Candidates::used(const List& list, std::span<const ContactTool> tools) const noexcept {
   double most = 0.0;
@@ -43,7 +47,7 @@ PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<con
       build(tissue, tools, displacement);
   }
   for (std::size_t t = 0; t < tools.size(); ++t)
-    if (tools[t].active && list_.range[t] < needed(tools[t])) status.set(StatusFlag::degraded_model);
+    if (tools[t].active && !is_complete(t, tools[t])) status.set(StatusFlag::degraded_model);
   return status;
 }
 
@@ -183,8 +187,12 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
     if (box.squared_distance(tool.middle()) > near * near) return;
     if (subfacet_ && search.reach > 0.25 * tool.radius && displacement.has_loads()) {  // where its vertices are now
       Box moved;
-      for (const int v : surface.triangle(triangle)) moved.include(displacement.position(tissue, v));
-      const double within = near - search.reach + displacement.largest_bulge(tissue, samples_, tool.radius);
+      double shown = 0.0;
+      for (const int v : surface.triangle(triangle)) {
+        moved.include(displacement.position(tissue, v));
+        if (subfacet_->is_known(v)) shown = std::max(shown, displacement.shown(*subfacet_, v).norm());
+      }
+      const double within = near - search.reach + shown + displacement.largest_bulge(tissue, samples_);
       if (moved.squared_distance(tool.middle()) > within * within) return;
     }
   }

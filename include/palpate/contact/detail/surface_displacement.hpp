@@ -76,13 +76,17 @@ class SurfaceDisplacement {
   /// half-space [m]. O(loads).
   Vector3 at_point(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSample& sample,
                    const HalfSpacePoint& point, int number) noexcept;
-  /// How far outward a point may be from where the vertices alone put it [m]. Dents are inward, and largest where the
-  /// loads are; outward ones, where the mesh shows too much of the half-space, are much smaller: half of the largest is
-  /// taken, or a quarter of the tool's radius. All of it where a force pulls outward. O(loads) after the forces have
+  /// The part of `at_point` without the displacement of the half-space, which is inward under loads that press [m]. An
+  /// interpolation of values of the three vertices: O(1) once they are known.
+  Vector3 without_half_space(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                             const ContactSample& sample) noexcept;
+  /// What the mesh shows of the half-space at a vertex under the loads [m]. O(1) once it is known.
+  const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
+  /// How far outward a point may be from there [m]: under loads that pull as far as the largest dent of a loaded point,
+  /// otherwise a tenth of it, for what loads along the surface move beside them. O(loads) after the forces have
   /// changed, O(1) otherwise.
-  double largest_bulge(const TissueView& tissue, const ContactSamples& samples, double radius) noexcept {
-    const double dent = largest_dent(tissue, samples);
-    return pulls_ ? dent : std::min(0.5 * dent, 0.25 * radius);
+  double largest_bulge(const TissueView& tissue, const ContactSamples& samples) noexcept {
+    return (pulls_ ? 1.0 : 0.1) * largest_dent(tissue, samples);
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -114,8 +118,6 @@ class SurfaceDisplacement {
   /// it is not known. O(loads).
   Vector3 dent(const SubfacetCompliance& subfacet, const ContactSample& sample, const HalfSpacePoint& point,
                int number) noexcept;
-  /// What the mesh shows of the half-space at a vertex under the loads [m].
-  const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
 
   std::vector<VertexForce> forces_;
   std::vector<PointLoad> loads_;

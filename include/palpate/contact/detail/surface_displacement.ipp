@@ -106,6 +106,18 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
   return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
 }
 
+PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView& tissue,
+                                                               const SubfacetCompliance& subfacet,
+                                                               const ContactSample& sample) noexcept {
+  Vector3 mesh = Vector3::Zero(), added = Vector3::Zero();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (sample.weights[a] == 0.0) continue;
+    mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
+    if (load_count_ > 0) added -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  }
+  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
+}
+
 PALPATE_INLINE double SurfaceDisplacement::largest_dent(const TissueView& tissue,
                                                         const ContactSamples& samples) noexcept {
   if (std::exchange(dent_stamp_, generation_) == generation_) return largest_dent_;
