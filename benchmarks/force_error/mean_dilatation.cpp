@@ -1,3 +1,3 @@
 #include "answer.hpp"
 
-template force_error::Answer force_error::answer<palpate::MeanDilatation<palpate::Hex8>>(const Case&);
+template force_error::Answer force_error::answer<palpate::MeanDilatation<palpate::Hex8>>(const Case&, bool);

@@ -4,43 +4,64 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 
 #include "cell.hpp"
 
 namespace force_error {
 
-/// Presses every place to every depth, and calls use(place, depth, servo, force) when the force has settled.
-template <class Tissue, class Use>
-void press(Tissue& tissue, const Case& test, int capacity, Use use) {
+/// Whether a tick reports that its force may be wrong because of mesh, points or solver.
+inline bool is_doubted(Status status) {
+  return status.has(StatusFlag::coarse_contact) || status.has(StatusFlag::degraded_model) ||
+         status.has(StatusFlag::solver_not_converged) || status.has(StatusFlag::lost_contact);
+}
+
+/// Presses one place to every depth; each force is that of a tick whose force has settled.
+inline std::array<Press, depths.size()> press(HapticServo& servo, const TestPlace& place, double radius, double reach) {
+  servo.reset();
+  std::array<Press, depths.size()> presses;
+  ToolState state;
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), place.outward);
+  state.orientation = {turn.w(), turn.x(), turn.y(), turn.z()};
+  Status status;
+  const auto force_at = [&](double depth) {
+    state.time += 1e-3;
+    state.position = place.point + (reach - depth) * place.outward;
+    status = servo.tick(state).status;
+    return servo.contact_force().dot(place.outward);
+  };
+  double depth = -0.1 * radius;
+  force_at(depth);
+  for (std::size_t d = 0; d < depths.size(); ++d) {
+    const double goal = depths[d] * radius, from = depth;
+    double force = 0.0, before = 0.0;
+    for (int k = 1; k <= 20; ++k) force = force_at(depth = from + (goal - from) * k / 20.0);
+    for (int k = 0; k < 100 && !(k > 20 && std::abs(force - before) <= 1e-5 * std::abs(force)); ++k) {
+      before = force;
+      force = force_at(goal);
+    }
+    const ForceError error = servo.force_error();
+    presses[d] = {force, error.parts.mesh + error.parts.merged, is_doubted(status)};
+  }
+  return presses;
+}
+
+/// Presses all places with all tools of a case.
+template <class Tissue>
+Presses press_all(Tissue& tissue, const Case& test, const ContactParameters& contact) {
   ServoOptions options;
   options.coupling_stiffness = infinity;
   options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
-  options.contact.capacity = capacity;
-  HapticServo servo(tissue, SphereTool{test.radius}, options);
-  for (std::size_t i = 0; i < test.places.size(); ++i) {
-    const auto& [point, outward] = test.places[i];
-    servo.reset();
-    ToolState state;
-    const auto force_at = [&](double depth) {
-      state.time += 1e-3;
-      state.position = point + (test.radius - depth) * outward;
-      servo.tick(state);
-      return servo.contact_force().dot(outward);
-    };
-    double depth = -0.1 * test.radius;
-    force_at(depth);
-    for (std::size_t d = 0; d < depths.size(); ++d) {
-      const double goal = depths[d] * test.radius, from = depth;
-      double force = 0.0, before = 0.0;
-      for (int k = 1; k <= 10; ++k) force = force_at(depth = from + (goal - from) * k / 10.0);
-      for (int k = 0; k < 60 && !(k > 1 && std::abs(force - before) <= 1e-5 * std::abs(force)); ++k) {
-        before = force;
-        force = force_at(goal);
-      }
-      use(i, d, servo, force);
-    }
+  options.contact = contact;
+  Presses presses(tools_of(test));
+  for (std::size_t t = 0; t < presses.size(); ++t) {
+    HapticServo servo(tissue, tool_of(t, test.radius), options);
+    for (const TestPlace& place : test.places)
+      presses[t].push_back(press(servo, place, test.radius, reach_of(t, test.radius)));
   }
+  return presses;
 }
 
 }  // namespace force_error

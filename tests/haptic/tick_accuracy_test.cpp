@@ -143,7 +143,8 @@ TEST_CASE("a sphere in a slot whose contact forces cancel is neither unsettled n
     for (int i = 0; i < 400; ++i) {
       state.time += 1e-3;
       state.position = slot.centre + 1e-6 * std::sin(0.1 * i) * Vector3::UnitZ();
-      flags.count(servo.tick(state).status);
+      const Status status = servo.tick(state).status;
+      if (i >= 40) flags.count(status);  // it begins inside: points for which there are no rows, and the ramp
       double sum = 0.0;
       for (const ToolContact& c : servo.contacts()) sum += c.force;
       pressed = std::max(pressed, sum);

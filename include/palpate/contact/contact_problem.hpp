@@ -110,6 +110,8 @@ class ContactProblem {
   inline bool may_have_row(const Candidate& c) const noexcept;
   inline void set_area(Candidate& c) const noexcept;
   static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);
+  inline void set_levels(Tools tools) noexcept;
+  Status update_candidates(const TissueView& tissue, Tools tools) noexcept;
   void start_levels(const TissueView& tissue, Tools tools) noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;

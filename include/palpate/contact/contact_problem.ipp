@@ -121,6 +121,29 @@ inline void ContactProblem::note_pressing(Candidate& c) noexcept {
   *weakest = &c;
 }
 
+inline void ContactProblem::set_levels(Tools tools) noexcept {
+  for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
+}
+
+/// A list without room for all points near tools that do not press yet is built again with fewer points for them.
+PALPATE_INLINE Status ContactProblem::update_candidates(const TissueView& tissue, Tools tools) noexcept {
+  constexpr int most_builds = 4;
+  Status status = candidates_.update(tissue, tools, displacement_);
+  for (int build = 1;; ++build) {
+    bool raised = false;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      if (!tools[t].active) continue;
+      const double before = levels_.level(static_cast<int>(t));
+      levels_.note_list(static_cast<int>(t), candidates_.is_complete(t, tools[t]), candidates_.fullness());
+      raised = raised || levels_.level(static_cast<int>(t)) > before;
+    }
+    if (!raised || build == most_builds) return status;
+    set_levels(tools);
+    candidates_.forget();
+    status = candidates_.update(tissue, tools, displacement_);
+  }
+}
+
 PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
   Status status;
   floor_ = tissue.compliance_floor();
@@ -137,7 +160,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   }
   auto near = are_near(tools);
   share_rows(tools, near);
-  for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
+  set_levels(tools);
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
   double change = 0.0, before = 0.0, rest = 0.0;
@@ -147,7 +170,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
       break;
     }
     proxies_.begin(tools, floor_);
-    status |= candidates_.update(tissue, tools, displacement_);
+    status |= update_candidates(tissue, tools);
     if (const auto now = are_near(tools); now != near) share_rows(tools, near = now);
     if (iteration == 0) {
       start_levels(tissue, tools);
@@ -167,7 +190,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.stick(tools);
   std::array<int, maximum_tools> grasped{};
   for (std::size_t t = 0; t < maximum_tools; ++t) grasped[t] = static_cast<int>(grasps_[t].rows().size());
-  levels_.end_tick(candidates_.samples(), rows_.count_pressing(), rows_.pressing_area(), grasped);
+  levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped);
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
@@ -542,6 +565,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     if (!tool.active || !tool.grasping) g.release();
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
+    constexpr double grasped_spacing = 0.25;  // radii; of a point that has no area at this level
     Candidate* nearest = nullptr;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
@@ -550,7 +574,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     }
     if (nearest == nullptr) continue;
     nearest->area = std::max(nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)));
-    if (!(nearest->area > 0.0)) nearest->area = std::pow(PointLevels::first_spacing * tool.radius, 2);
+    if (!(nearest->area > 0.0)) nearest->area = std::pow(grasped_spacing * tool.radius, 2);
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     takes_pad[t] = parameters_.grasp_radius > 0.0 && most > 2;
     if (takes_pad[t])

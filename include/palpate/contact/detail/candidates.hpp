@@ -54,6 +54,8 @@ class Candidates {
   void reset() noexcept;
   /// Whether the list has all points that a tool may reach.
   bool is_complete(std::size_t t, const ContactTool& tool) const noexcept;
+  /// Part of the list that is used.
+  double fullness() const noexcept { return static_cast<double>(list_.points.count()) / maximum(); }
   /// Whether the last update rebuilt the list: candidates have moved in memory.
   bool is_new() const noexcept { return is_new_; }
   /// Whether a force of the previous list is missing in the last list because its tool was lifted. The surface then

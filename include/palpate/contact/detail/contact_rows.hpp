@@ -54,8 +54,10 @@ class ContactRows {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
     return remaining_[at(row)] < 0.3 || (point.is_disturbed && !point.is_known() && !point.is_fixed);
   }
-  /// The area that the rows with force of every tool stand for [m^2].
-  std::array<double, maximum_tools> pressing_area() const noexcept;
+  /// How many points of equal area have the print of every tool, from the forces f of its rows and their normals n:
+  /// 9/8 |sum f n|^2 / sum f^2, which is their number for the pressure of Hertz. Points that begin to press, or have
+  /// almost faded out, count little. Of a tool between two surfaces it is about the number of points on one of them.
+  std::array<double, maximum_tools> points_of_print() const noexcept;
 
   /// Before a point is added: its slip counts from where the tool stuck or slipped to in the last tick, as that of the
   /// nearest point that pressed then. Otherwise a tool that passes from point to point would slide without friction in

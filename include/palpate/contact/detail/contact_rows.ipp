@@ -152,11 +152,23 @@ PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_pressing() cons
   return counts;
 }
 
-PALPATE_INLINE std::array<double, maximum_tools> ContactRows::pressing_area() const noexcept {
-  std::array<double, maximum_tools> areas{};
-  for (int i = 0; i < count_; ++i)
-    if (rows_[at(i)].force > 0.0 && !rows_[at(i)].grasped) areas[at(rows_[at(i)].tool)] += candidate_[at(i)]->area;
-  return areas;
+PALPATE_INLINE std::array<double, maximum_tools> ContactRows::points_of_print() const noexcept {
+  constexpr double of_hertz = 9.0 / 8.0, least_part = 0.25;
+  std::array<double, maximum_tools> sums{}, squares{}, points{};
+  std::array<Vector3, maximum_tools> resultants;
+  resultants.fill(Vector3::Zero());
+  for (const Contact& row : contacts()) {
+    if (!(row.force > 0.0) || row.grasped) continue;
+    sums[at(row.tool)] += row.force;
+    squares[at(row.tool)] += row.force * row.force;
+    resultants[at(row.tool)] += row.force * row.normal;
+  }
+  for (std::size_t t = 0; t < maximum_tools; ++t) {
+    if (!(squares[t] > 0.0)) continue;
+    const double squared = sums[t] * sums[t], part = std::max(least_part, resultants[t].squaredNorm() / squared);
+    points[t] = of_hertz * part * squared / squares[t];
+  }
+  return points;
 }
 
 PALPATE_INLINE bool ContactRows::drop_idle(const TissueView& tissue, const Candidates& candidates) noexcept {

@@ -81,24 +81,25 @@ class ContactSamples::Builder {
   /// Coarse levels first: their points keep the largest distances. The order is random, so that no direction is
   /// preferred, but the same in every run.
   void choose_levels() {
-    made_.level_.assign(points_.size(), 0);
-    std::vector<int> order(points_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
-      const std::uint64_t one = points_[at(i)].key, other = points_[at(j)].key;
-      return one != other ? one < other : i < j;
-    });
+    std::vector<std::pair<std::uint64_t, int>> order;
+    for (int i = 0; i < made_.count(); ++i) order.emplace_back(points_[at(i)].key, i);
+    std::sort(order.begin(), order.end());
+    std::vector<Point> points;  // in this order: read one after the other, once per level
+    for (const auto& [key, i] : order) points.push_back(points_[at(i)]);
+    std::vector<std::uint8_t> levels(points.size(), 0);
     std::vector<int> taken;
     for (int level = made_.levels_ - 1; level > 0; --level) {
-      Cells cells(points_, least_distance * made_.spacing(level));
-      for (const int i : taken) cells.add(i);
-      for (const int i : order) {
-        if (made_.level_[at(i)] > 0 || cells.has_near(points_[at(i)])) continue;
-        made_.level_[at(i)] = static_cast<std::uint8_t>(level);
-        cells.add(i);
-        taken.push_back(i);
+      Cells cells(points, least_distance * made_.spacing(level));
+      for (const int k : taken) cells.add(k);
+      for (int k = 0; k < made_.count(); ++k) {
+        if (levels[at(k)] > 0 || cells.has_near(points[at(k)])) continue;
+        levels[at(k)] = static_cast<std::uint8_t>(level);
+        cells.add(k);
+        taken.push_back(k);
       }
     }
+    made_.level_.resize(levels.size());
+    for (std::size_t k = 0; k < order.size(); ++k) made_.level_[at(order[k].second)] = levels[k];
   }
 
   void divide_areas() {
@@ -160,7 +161,7 @@ class ContactSamples::Builder {
         : points_(points),
           squared_(distance * distance),
           per_size_(0.5 / distance),
-          head_(std::bit_ceil(points.size() + 1), -1),
+          head_(std::bit_ceil(2 * points.size() + 64), -1),
           next_(points.size(), -1) {}
     void add(int i) {
       const Vector3& x = points_[at(i)].position;
@@ -186,11 +187,13 @@ class ContactSamples::Builder {
 
    private:
     std::int64_t cell(double x) const noexcept { return static_cast<std::int64_t>(std::floor(x * per_size_)); }
+    /// Cells of a block of 4 x 4 x 4 are beside each other in memory: the eight cells of a search are in few blocks.
     std::size_t slot(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
-      std::uint64_t key = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u;
-      key = (key ^ static_cast<std::uint64_t>(y)) * 0x9e3779b97f4a7c15u;
-      key = (key ^ static_cast<std::uint64_t>(z)) * 0x9e3779b97f4a7c15u;
-      return static_cast<std::size_t>((key ^ key >> 32) & (head_.size() - 1));
+      std::uint64_t key = static_cast<std::uint64_t>(x >> 2) * 0x9e3779b97f4a7c15u;
+      key = (key ^ static_cast<std::uint64_t>(y >> 2)) * 0x9e3779b97f4a7c15u;
+      key = (key ^ static_cast<std::uint64_t>(z >> 2)) * 0x9e3779b97f4a7c15u;
+      const auto inside = static_cast<std::uint64_t>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+      return static_cast<std::size_t>(((key ^ key >> 32) << 6 | inside) & (head_.size() - 1));
     }
     /// Infinite for points that are not neighbours.
     double squared_distance(const Point& p, int i) const noexcept {

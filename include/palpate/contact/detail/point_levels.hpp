@@ -11,16 +11,17 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// The level of the contact samples for every tool, so that a press has about the same number of points on any mesh and
-/// at any depth. The level follows the area that presses, in small steps: between two levels points fade in and out
-/// (ContactSamples::area), so that the force has no jump. A tool with more points than its share of the rows gets a
-/// higher level at once. What one tool does not need of the rows is for the others. No allocation.
+/// at any depth. A tool has a whole level as long as the points in the area that presses are 0.7 to 1.6 times the
+/// wanted number: a tool that slides, or presses little deeper, keeps its points, and its forces have an energy. From
+/// one level to the next it goes in small steps: points fade in and out (ContactSamples::area), so that the force has
+/// no jump. A tool with more points than its share of the rows gets a higher level at once. What one tool does not need
+/// of the rows is for the others. No allocation.
 class PointLevels {
  public:
-  static constexpr double finest_spacing = 0.125;                                    ///< of points, in radii
-  static constexpr double coarsest_spacing = 0.5;                                    ///< in ContactTool::point_scale
+  static constexpr double finest_spacing = 0.125;                ///< of the lattice on long facets, in radii
+  static constexpr double least_spacing = 0.7 * finest_spacing;  ///< of a tool's points, where the mesh has them
+  static constexpr double coarsest_spacing = 0.5;                ///< in ContactTool::point_scale
   static constexpr double crowded_spacing = std::numbers::sqrt2 * coarsest_spacing;  ///< without rows for that
-  /// Of a tool that does not press: it begins to press when it is a hundredth of its radius in the surface, or earlier.
-  static constexpr double first_spacing = 0.25;
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
 
   /// Back to the state after construction.
@@ -48,35 +49,40 @@ class PointLevels {
   /// The level of a tool that begins to press with this area [m^2], of which parts may not press in the end.
   void start(const ContactSamples& samples, int tool, double area) noexcept;
 
+  /// Whether a list of candidates has all points near a tool, and how full it is (0 to 1). Where points are missing,
+  /// the tool gets a higher level, which it keeps until twice as many have room.
+  void note_list(int tool, bool is_complete, double full) noexcept;
   /// Forgets the points noted before: those of the last round of a tick count.
   void begin_round() noexcept;
   /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m].
   void note_skipped(int tool, double penetration) noexcept;
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
-  /// Sets the levels for the next tick. Per tool: rows that press, the area that they stand for [m^2], and rows of
-  /// grasped points.
-  void end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
-                const std::array<double, maximum_tools>& area, const std::array<int, maximum_tools>& grasped) noexcept;
+  /// Sets the levels for the next tick. Per tool: rows that press, how many points of equal area its print has
+  /// (ContactRows::points_of_print), and rows of grasped points.
+  void end_tick(const std::array<int, maximum_tools>& used, const std::array<double, maximum_tools>& points,
+                const std::array<int, maximum_tools>& grasped) noexcept;
   /// Penetration of the deepest point without a row [m].
   double deepest() const noexcept { return deepest_; }
 
  private:
   static constexpr int headroom = 16;  // rows above those of the last tick for a tool that needs less than its share
-  static constexpr double longest_step = 0.1;  // levels per tick
+  static constexpr double most_rows = 0.7;  // part of its share from which on a tool gets a higher level
+  static constexpr double longest_step = 0.1, full_step = 0.5;  // levels per tick; full: before rows are missing
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
-  double step(const ContactSamples& samples, std::size_t tool, int used, double area) noexcept;
-  double least_with_rows(std::size_t tool, double area) noexcept;
-  double level_for(const ContactSamples& samples, std::size_t tool, double area) const noexcept;
+  double step(std::size_t tool, int used, double points) noexcept;
+  double least_with_rows(std::size_t tool, bool is_full, double rows) noexcept;
+  double first_level(std::size_t tool) const noexcept { return std::max(first_[tool], listed_[tool]); }
+  double next_goal(std::size_t tool, double size) const noexcept;
 
   std::array<int, maximum_tools> share_{}, had_{}, needed_{}, left_out_{}, skipped_{};
-  std::array<double, maximum_tools> radius_{}, level_{}, least_{}, first_{}, most_{}, crowded_{};
+  std::array<double, maximum_tools> radius_{}, level_{}, goal_{}, least_{}, first_{}, most_{}, crowded_{}, listed_{};
   /// The last time that the points of a tool did not fit.
   struct Overflow {
     double level = 0.0;  ///< at which they fit
-    double area = -1.0;  ///< that pressed there [m^2]; negative: not known yet
+    double rows = -1.0;  ///< that pressed there, were it level 0; negative: not known yet
     int share = 0;       ///< rows; 0: never
   };
   std::array<Overflow, maximum_tools> overflow_{};

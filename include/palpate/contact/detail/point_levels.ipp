@@ -19,14 +19,16 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const
     const auto [radius, scale] = sizes[t];
     const bool begins = !(std::exchange(radius_[t], near[t] ? radius : 0.0) > 0.0);
     if (!(radius > 0.0)) continue;
-    least_[t] = has_areas ? samples.level_with(finest_spacing * radius) : 0.0;
-    first_[t] = has_areas ? samples.level_with(first_spacing * radius) : 0.0;
-    most_[t] =
-        std::max(least_[t], samples.level_with(has_areas ? coarsest_spacing * scale : coarsest_of_mesh * radius));
-    const double crowded = (1.0 + ContactSamples::rounding) * crowded_spacing * scale;
-    crowded_[t] = has_areas ? std::max(most_[t], samples.level_with(crowded)) : most_[t];
-    if (begins) level_[t] = first_[t];
+    const double last = samples.levels() - 1.0;
+    const auto whole = [&](double spacing) { return std::round(samples.level_with(spacing)); };
+    least_[t] = has_areas ? std::floor(samples.level_with(least_spacing * radius)) : 0.0;
+    first_[t] = has_areas ? std::floor(samples.level_with(finest_spacing * radius)) : 0.0;
+    most_[t] = has_areas ? std::max(least_[t], whole(coarsest_spacing * scale))
+                         : samples.level_with(coarsest_of_mesh * radius);
+    crowded_[t] = has_areas ? std::min(last, std::max(most_[t], whole(crowded_spacing * scale))) : most_[t];
+    if (begins) level_[t] = goal_[t] = first_[t], listed_[t] = 0.0;
     level_[t] = std::clamp(level_[t], least_[t], crowded_[t]);
+    goal_[t] = std::clamp(goal_[t], least_[t], crowded_[t]);
   }
   divide();
   begin_round();
@@ -59,25 +61,39 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
     if (radius_[t] > 0.0) share_[t] += rest / tools;
 }
 
-/// Between two levels a tool has up to twice as many points as it would have at a level of that spacing.
+/// A tool has up to 1.6 times as many, and while points fade in twice.
 PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
   return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
 }
 
-/// The level at which an area has the wanted number of points, each the middle of a hexagon. Above the coarsest one
-/// only where the tool has no rows for that.
-PALPATE_INLINE double PointLevels::level_for(const ContactSamples& samples, std::size_t tool,
-                                             double area) const noexcept {
-  const auto level_with = [&](double points) {
-    return samples.level_with(std::sqrt(area / points * 2.0 / std::numbers::sqrt3));
-  };
-  const double fitting = std::min(level_with(0.5 * share_[tool]), crowded_[tool]);
-  return std::clamp(level_with(wanted(tool)), least_[tool], std::max(most_[tool], fitting));
+/// The whole level that a tool goes to; `size`: the points of its print, were the level 0. Levels differ by a factor of
+/// two in points, the limits by more: a level that was just reached stays.
+PALPATE_INLINE double PointLevels::next_goal(std::size_t tool, double size) const noexcept {
+  constexpr double too_few = 0.7, too_many = 1.6;
+  double goal = goal_[tool];
+  while (goal < most_[tool] && size * std::exp2(-goal) > too_many * wanted(tool)) goal += 1.0;
+  while (goal > least_[tool] && size * std::exp2(-goal) < too_few * wanted(tool)) goal -= 1.0;
+  return std::clamp(goal, std::max(least_[tool], listed_[tool]), crowded_[tool]);
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
-  if (limits_.has_areas && area > 0.0)
-    level_[at(tool)] = std::max(first_[at(tool)], level_for(samples, at(tool), area));
+  constexpr double hexagon = 0.866;
+  if (!limits_.has_areas || !(area > 0.0)) return;
+  double& goal = goal_[at(tool)];
+  const auto points = [&] { return area / (hexagon * std::pow(samples.spacing(goal), 2)); };
+  while (goal < crowded_[at(tool)] && points() > wanted(at(tool))) goal += 1.0;
+  level_[at(tool)] = goal;
+}
+
+PALPATE_INLINE void PointLevels::note_list(int tool, bool is_complete, double full) noexcept {
+  constexpr double room_for_twice = 0.4;
+  const std::size_t t = at(tool);
+  if (!limits_.has_areas || !(radius_[t] > 0.0)) return;
+  if (!is_complete)
+    listed_[t] = std::min(first(tool) + 1.0, crowded_[t]);
+  else if (full < room_for_twice && first(tool) <= listed_[t])
+    listed_[t] = std::max(0.0, listed_[t] - 1.0);
+  if (needed_[t] == 0) level_[t] = goal_[t] = std::max(level_[t], listed_[t]);
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -96,40 +112,43 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
   deepest_ = std::max(deepest_, penetration);
 }
 
-/// The least level for which a tool has rows, as far as it is known: where points did not fit, the level does not
-/// return until less of the surface presses or the tool has more rows. Otherwise a tool that rests would try again and
-/// again.
-PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, double area) noexcept {
-  constexpr double less_area = 0.8, more_rows = 1.25;
+/// The least level for which a tool has rows, as far as it is known: where points did not fit, or almost not, the level
+/// does not return until the print is smaller or the tool has more rows. Otherwise a tool that rests would try again
+/// and again.
+PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, bool is_full, double rows) noexcept {
+  constexpr double smaller = 0.8, more_rows = 1.25;
   Overflow& overflow = overflow_[tool];
-  if (left_out_[tool] > 0) overflow = {std::floor(level_[tool]) + 1.0, -1.0, had_[tool]};
-  if (left_out_[tool] == 0 && overflow.area < 0.0) overflow.area = area;
-  if (area < less_area * overflow.area || share_[tool] > more_rows * overflow.share) overflow = {};
+  if (is_full) overflow = {std::min(std::floor(level_[tool]) + 1.0, crowded_[tool]), -1.0, had_[tool]};
+  if (!is_full && overflow.rows < 0.0 && level_[tool] >= overflow.level) overflow.rows = rows;
+  if (rows < smaller * overflow.rows || share_[tool] > more_rows * overflow.share) overflow = {};
   return overflow.level;
 }
 
 /// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
-PALPATE_INLINE double PointLevels::step(const ContactSamples& samples, std::size_t tool, int used,
-                                        double area) noexcept {
+PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double points) noexcept {
   if (!limits_.has_areas && left_out_[tool] > 0) return 1.0;
   if (!limits_.has_areas) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
-  const double wanted = std::max(level_for(samples, tool, area), least_with_rows(tool, area)) - level_[tool];
-  return left_out_[tool] > 0 ? std::max(1.0, wanted) : std::clamp(wanted, -longest_step, longest_step);
+  const bool is_full = left_out_[tool] > 0 || used > most_rows * share_[tool];
+  const double size = points * std::exp2(level_[tool]), rows = used * std::exp2(std::floor(level_[tool]));
+  goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full, rows));
+  const double wanted = goal_[tool] - level_[tool];
+  return left_out_[tool] > 0 ? std::max(1.0, wanted)
+                             : std::clamp(wanted, -longest_step, is_full ? full_step : longest_step);
 }
 
-PALPATE_INLINE void PointLevels::end_tick(const ContactSamples& samples, const std::array<int, maximum_tools>& used,
-                                          const std::array<double, maximum_tools>& area,
+PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& used,
+                                          const std::array<double, maximum_tools>& points,
                                           const std::array<int, maximum_tools>& grasped) noexcept {
   had_ = share_;
   for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t] + grasped[t];
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
-      level_[t] = first_[t];
+      level_[t] = goal_[t] = first_level(t);
       overflow_[t] = {};
       continue;
     }
-    level_[t] += step(samples, t, used[t], area[t]);
+    level_[t] += step(t, used[t], points[t]);
   }
 }
 
