@@ -202,7 +202,7 @@ TEST_CASE("a teleport of 1 m: slew limit kept, flagged, recovered within 50 ms",
 TEST_CASE("a jump into the tissue within two radii ends at the static force", "[haptic][servo][extreme][D2]") {
   Pad pad = test::make_pad();
   testing::Random random(82);
-  int lost = 0, elsewhere = 0, jumps = 0;
+  int lost = 0, elsewhere = 0, silent = 0, jumps = 0;
   for (int i = 0; i < 200; ++i) {
     const Vector3 start(random.uniform(8e-3, 22e-3), random.uniform(8e-3, 22e-3), pad_height + sphere_radius + 1e-4);
     const double length = sphere_radius * random.uniform(0.2, 1.9);
@@ -212,19 +212,25 @@ TEST_CASE("a jump into the tissue within two radii ends at the static force", "[
     jumped.tick(start);
     jumped.hold(5);
     jumped.tick(end);
-    const Vector3 f = jumped.hold(100).force();
+    const GatedForce jump = jumped.hold(100);
+    const Vector3 f = jump.force();
     walked.tick(start);
     walked.move(end, 200);
     const Vector3 g = walked.hold(100).force();
     ++jumps;
+    const bool differs = (f - g).norm() > 0.1 * g.norm();
     if (f.norm() < 0.1 * g.norm())
       ++lost;
-    else if ((f - g).norm() > 0.1 * g.norm())
+    else if (differs)
       ++elsewhere;
+    silent += differs && !jump.status.has(StatusFlag::large_displacement);
+    CHECK(std::abs(f.norm() - g.norm()) < 0.06 * g.norm());
   }
-  INFO(lost << " lost, " << elsewhere << " elsewhere, of " << jumps);
+  INFO(lost << " lost, " << elsewhere << " elsewhere, " << silent << " of them not flagged, of " << jumps);
   CHECK(lost == 0);
-  CHECK(elsewhere <= 12);  // on edges longer than the radius a deep sphere has more than one equilibrium
+  CHECK(silent == 0);
+  // Deeper than a radius a sphere has more than one equilibrium, and levels of points differ in the direction.
+  CHECK(elsewhere <= 24);
 }
 
 TEST_CASE("a session that starts in the tissue ramps from zero to an outward force", "[haptic][servo][extreme][D3]") {

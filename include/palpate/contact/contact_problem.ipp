@@ -343,14 +343,15 @@ inline double ContactProblem::distance_from_support(const LinearModelError& mode
   return distance;
 }
 
-/// The strain follows from the force on a fine mesh. Where columns or rows are missing the force is too small: all of
-/// the depth then counts as indentation.
+/// The strain follows from the force on a fine mesh. Where columns, rows or points are missing the force may be too
+/// small: all of the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
                                                      const BodyContacts& contacts, std::size_t t,
                                                      SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
+  constexpr double few = 0.1;
   const LinearModelError& model = *body.model;
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
-  if (late_ || missing_depth() > 0.0) sphere.force = infinity;
+  if (late_ || missing_depth() > 0.0 || (has_fewer_points(t) && error_of_points(t) > few)) sphere.force = infinity;
   double sum = 0.0;
   for (const Contact& c : contacts.rows) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
@@ -401,19 +402,15 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
 }
 
 /// What a contact of so few points may be in error, relative to the force: measured with spheres on meshes whose nodes
-/// were renumbered, which have other points, and with few rows: up to 7 % with ten, 2 % with twenty. Their number is
-/// that of whole points of the level in the area that presses; between two levels some have almost faded out. Points
-/// without half-space have no area, and stand for themselves.
+/// were renumbered, which have other points, and with few rows: up to 3 / n^2 for the points of the print
+/// (ContactRows::points_of_print). Points without half-space have no area, and stand for themselves.
 PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexcept {
-  constexpr double factor = 8.0, hexagon = 0.866;
-  double area = 0.0;
-  for (int i = 0; i < rows_.count(); ++i)
-    if (const Candidate& c = rows_.candidate(i); c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0)
-      area += rows_.has_area(i) ? c.area : 0.0;
-  if (!(area > 0.0)) return 0.0;
-  const double spacing = candidates_.samples().spacing(levels_.level(static_cast<int>(t)));
-  const double points = area / (hexagon * spacing * spacing);
-  return std::min(1.0, factor / (points * points));
+  constexpr double factor = 4.0;
+  bool has_areas = false;
+  for (int i = 0; i < rows_.count() && !has_areas; ++i)
+    has_areas = rows_.candidate(i).tool == static_cast<int>(t) && rows_.has_area(i);
+  const double points = has_areas ? rows_.points_of_print()[t] : 0.0;
+  return points > 0.0 ? std::min(1.0, factor / (points * points)) : 0.0;
 }
 
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is

@@ -337,6 +337,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const double large = detail::flagged_error * problem_.scale_of_force(i, error.force);
   const auto is_large = [&](double part) { return part > large && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);
+  if (is_large(error.parts.merged) && problem_.has_fewer_points(i)) forces_[i].status.set(StatusFlag::degraded_model);
   if (is_large(error.parts.linearity)) forces_[i].status.set(StatusFlag::large_displacement);
   forces_[i].error = error;
 }

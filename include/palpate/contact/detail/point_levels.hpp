@@ -41,6 +41,8 @@ class PointLevels {
   int share(int tool) const noexcept { return share_[at(tool)]; }
   bool has_areas() const noexcept { return limits_.has_areas; }
   double level(int tool) const noexcept { return level_[at(tool)]; }
+  /// The level of a tool that begins to press.
+  double finest(int tool) const noexcept { return first_[at(tool)]; }
   /// The last level that has all points of a tool.
   int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
   /// The last level that has all points that a tool has to know: without areas, points of the next finer level show how
@@ -67,13 +69,15 @@ class PointLevels {
 
  private:
   static constexpr int headroom = 16;  // rows above those of the last tick for a tool that needs less than its share
-  static constexpr double most_rows = 0.7;  // part of its share from which on a tool gets a higher level
+  // From these rows on a tool gets a higher level: a part of its share, and as many per wanted point, so that it hardly
+  // depends on what other tools need.
+  static constexpr double most_rows = 0.9, rows_per_point = 2.4;
   static constexpr double longest_step = 0.1, full_step = 0.5;  // levels per tick; full: before rows are missing
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
   double step(std::size_t tool, int used, double points) noexcept;
-  double least_with_rows(std::size_t tool, bool is_full, double rows) noexcept;
+  double least_with_rows(std::size_t tool, bool is_many, double rows) noexcept;
   double first_level(std::size_t tool) const noexcept { return std::max(first_[tool], listed_[tool]); }
   double next_goal(std::size_t tool, double size) const noexcept;
 

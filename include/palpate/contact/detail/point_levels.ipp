@@ -115,11 +115,11 @@ PALPATE_INLINE void PointLevels::note_left_out(int tool, double penetration) noe
 /// The least level for which a tool has rows, as far as it is known: where points did not fit, or almost not, the level
 /// does not return until the print is smaller or the tool has more rows. Otherwise a tool that rests would try again
 /// and again.
-PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, bool is_full, double rows) noexcept {
+PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, bool is_many, double rows) noexcept {
   constexpr double smaller = 0.8, more_rows = 1.25;
   Overflow& overflow = overflow_[tool];
-  if (is_full) overflow = {std::min(std::floor(level_[tool]) + 1.0, crowded_[tool]), -1.0, had_[tool]};
-  if (!is_full && overflow.rows < 0.0 && level_[tool] >= overflow.level) overflow.rows = rows;
+  if (is_many) overflow = {std::min(std::floor(level_[tool]) + 1.0, crowded_[tool]), -1.0, had_[tool]};
+  if (!is_many && overflow.rows < 0.0 && level_[tool] >= overflow.level) overflow.rows = rows;
   if (rows < smaller * overflow.rows || share_[tool] > more_rows * overflow.share) overflow = {};
   return overflow.level;
 }
@@ -130,7 +130,8 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double point
   if (!limits_.has_areas) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
   const bool is_full = left_out_[tool] > 0 || used > most_rows * share_[tool];
   const double size = points * std::exp2(level_[tool]), rows = used * std::exp2(std::floor(level_[tool]));
-  goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full, rows));
+  const bool has_many = used > rows_per_point * limits_.wanted && level_[tool] < most_[tool];
+  goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full || has_many, rows));
   const double wanted = goal_[tool] - level_[tool];
   return left_out_[tool] > 0 ? std::max(1.0, wanted)
                              : std::clamp(wanted, -longest_step, is_full ? full_step : longest_step);
