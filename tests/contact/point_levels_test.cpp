@@ -96,13 +96,14 @@ TEST_CASE("where a list has no room for all points near a tool, the tool has few
   PointLevels levels;
   for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
   const double first = levels.level(0);
-  const auto tick_with = [&](bool is_complete, double full) {
-    levels.note_list(0, is_complete, full);
+  CHECK_FALSE(levels.note_full_list(0));  // it presses: in the next ticks
+  const auto tick_with_room = [&](int room) {
+    levels.note_room(0, 100, room);
     tick(levels, samples, {1e-6}, 64);
   };
-  for (int i = 0; i < 50; ++i) tick_with(i > 0, 0.7);
+  for (int i = 0; i < 50; ++i) tick_with_room(100);
   CHECK(levels.level(0) == first + 1.0);
-  for (int i = 0; i < 50; ++i) tick_with(true, 0.2);
+  for (int i = 0; i < 50; ++i) tick_with_room(130);
   CHECK(levels.level(0) == first);
 }
 

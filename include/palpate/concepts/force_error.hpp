@@ -18,7 +18,7 @@ struct ForceErrorParts {
   double conditioning = 0.0;  ///< digits lost by the solver
   double linearity = 0.0;     ///< strain beyond the small ones of linear elasticity
   double late = 0.0;          ///< columns of the compliance that are not computed yet
-  double merged = 0.0;        ///< contact points without a row, because more press than the capacity
+  double merged = 0.0;        ///< contact points without a row, and prints of few points
 
   ForceErrorParts operator*(double f) const noexcept {
     return {f * mesh, f * storage, f * conditioning, f * linearity, f * late, f * merged};

@@ -125,22 +125,24 @@ inline void ContactProblem::set_levels(Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
 }
 
-/// A list without room for all points near tools that do not press yet is built again with fewer points for them.
+/// Where the list has no room for all points near the tools, the tool with the most of them gets a higher level: at once
+/// where it does not press, and the list is built again; otherwise in the next ticks.
 PALPATE_INLINE Status ContactProblem::update_candidates(const TissueView& tissue, Tools tools) noexcept {
   constexpr int most_builds = 4;
   Status status = candidates_.update(tissue, tools, displacement_);
+  if (!candidates_.is_new() && !status.has(StatusFlag::degraded_model)) return status;
   for (int build = 1;; ++build) {
-    bool raised = false;
+    int most = 0, largest = -1;
+    bool is_complete = true;
     for (std::size_t t = 0; t < tools.size(); ++t) {
-      if (!tools[t].active) continue;
-      const double before = levels_.level(static_cast<int>(t));
-      levels_.note_list(static_cast<int>(t), candidates_.is_complete(t, tools[t]), candidates_.fullness());
-      raised = raised || levels_.level(static_cast<int>(t)) > before;
+      const int tool = static_cast<int>(t), points = tools[t].active ? candidates_.count(tool) : 0;
+      is_complete = is_complete && (!tools[t].active || candidates_.is_complete(t, tools[t]));
+      if (points > most && !levels_.is_coarsest(tool)) most = points, largest = tool;
+      levels_.note_room(tool, points, candidates_.room());
     }
-    if (!raised || build == most_builds) return status;
+    if (is_complete || largest < 0 || !levels_.note_full_list(largest) || build == most_builds) return status;
     set_levels(tools);
-    candidates_.forget();
-    status = candidates_.update(tissue, tools, displacement_);
+    status = candidates_.update_again(tissue, tools, displacement_);
   }
 }
 
@@ -534,6 +536,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   start_.renumber_loads(candidates_.samples(), renumber);
   for (Grasp& g : grasps_) g.move_to(candidates_, fresh.candidates_.samples(), surface);
   rows_.move_to(fresh.rows_);
+  levels_.move_to(fresh.levels_);
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
 }
@@ -583,8 +586,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (takes_pad[t]) grasps_[t].place_pad(tissue, candidates_, displacement_, tools[t]);
   rows_.forget_compliance();
-  candidates_.forget();
-  return candidates_.update(tissue, tools, displacement_);
+  return candidates_.update_again(tissue, tools, displacement_);
 }
 
 /// Whether the vertices of all pads are others than before.
@@ -779,7 +781,7 @@ PALPATE_INLINE void ContactProblem::follow(const TissueView& tissue, Tools tools
   if (part == 1.0)
     rows_.place_points();
   else
-    displacement_.blend(tissue, start_, part, candidates_.samples());
+    displacement_.blend(tissue, start_, part, candidates_.subfacet(), candidates_.samples());
   candidates_.move_surface(2.0 * part * rows_.longest_path());
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) candidates_.move_sphere(t, tools[t]);

@@ -54,8 +54,12 @@ class Candidates {
   void reset() noexcept;
   /// Whether the list has all points that a tool may reach.
   bool is_complete(std::size_t t, const ContactTool& tool) const noexcept;
-  /// Part of the list that is used.
-  double fullness() const noexcept { return static_cast<double>(list_.points.count()) / maximum(); }
+  /// Points of a tool in the list, and room in the list.
+  int count(int tool) const noexcept;
+  int room() const noexcept { return maximum() - list_.points.count(); }
+  /// `update` once more in a tick, with other levels: the list is built again.
+  Status update_again(const TissueView& tissue, std::span<const ContactTool> tools,
+                      SurfaceDisplacement& displacement) noexcept;
   /// Whether the last update rebuilt the list: candidates have moved in memory.
   bool is_new() const noexcept { return is_new_; }
   /// Whether a force of the previous list is missing in the last list because its tool was lifted. The surface then
@@ -173,7 +177,11 @@ class Candidates {
                    SurfaceDisplacement& displacement) noexcept;
   inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
                                           const ContactSample& sample) noexcept;
-  Vector3 without_half_space(const TissueView& tissue, SurfaceDisplacement& displacement, int sample) const noexcept;
+  struct Bound {
+    Vector3 place;
+    double bulge;
+  };
+  Bound bound(const TissueView& tissue, SurfaceDisplacement& displacement, int sample) const noexcept;
   inline double known_gap(int tool, int sample) const noexcept;
   void examine(const TissueView& tissue, const ContactTool& tool, int triangle, const Search& search, List& list,
                SurfaceDisplacement& displacement) noexcept;

@@ -83,6 +83,12 @@ PALPATE_INLINE bool Candidates::has_any(int tool) const noexcept {
   return std::any_of(points.begin(), points.end(), [tool](const Candidate& c) { return c.tool == tool; });
 }
 
+PALPATE_INLINE int Candidates::count(int tool) const noexcept {
+  const auto points = list_.points.items();
+  return static_cast<int>(
+      std::count_if(points.begin(), points.end(), [tool](const Candidate& c) { return c.tool == tool; }));
+}
+
 PALPATE_INLINE void Candidates::move_to(Candidates& fresh, const ContactSurface& surface) noexcept {
   std::swap(samples_, fresh.samples_);
   std::swap(subfacet_, fresh.subfacet_);
@@ -158,26 +164,28 @@ PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, Sur
   return c.moved_to;
 }
 
-/// Where the half-space dents the surface, the point is farther from the tools than this.
-PALPATE_INLINE Vector3 Candidates::without_half_space(const TissueView& tissue, SurfaceDisplacement& displacement,
-                                                      int number) const noexcept {
+/// Where a point is without what the half-space moves it, and how far outward it may be from there.
+PALPATE_INLINE Candidates::Bound Candidates::bound(const TissueView& tissue, SurfaceDisplacement& displacement,
+                                                   int number) const noexcept {
   const ContactSample& sample = samples_[number];
-  if (!half_space_point(number).is_known()) return place_by_vertices(tissue, displacement, sample);
-  return rest(tissue.contact_surface(), sample) + displacement.without_half_space(tissue, *subfacet_, sample);
+  const HalfSpacePoint point = half_space_point(number);
+  if (!point.is_known()) return {place_by_vertices(tissue, displacement, sample), 0.0};
+  return {rest(tissue.contact_surface(), sample) + displacement.without_half_space(tissue, *subfacet_, sample),
+          displacement.largest_bulge(tissue, *subfacet_, samples_, point.normal)};
 }
 
 PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
                                                const Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return infinity;
-  const Vector3 moved = without_half_space(tissue, displacement, c.sample) - c.point;
-  return c.normal.dot(moved) + displacement.largest_bulge(tissue, samples_);
+  const auto [place, bulge] = bound(tissue, displacement, c.sample);
+  return c.normal.dot(place - c.point) + bulge;
 }
 
 PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, const ContactTool& tool,
                                                   SurfaceDisplacement& displacement, Candidate& c) const noexcept {
   if (!subfacet_ || !displacement.has_loads()) return -infinity;
-  const double distance = tool.closest(without_half_space(tissue, displacement, c.sample)).distance;
-  c.gap = std::max(least_gap(c), distance - tool.radius - displacement.largest_bulge(tissue, samples_));
+  const auto [place, bulge] = bound(tissue, displacement, c.sample);
+  c.gap = std::max(least_gap(c), tool.closest(place).distance - tool.radius - bulge);
   c.seen = travel(static_cast<std::size_t>(c.tool));
   c.evaluated = false;
   return c.gap;

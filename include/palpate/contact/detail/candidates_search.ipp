@@ -51,6 +51,17 @@ PALPATE_INLINE Status Candidates::update(const TissueView& tissue, std::span<con
   return status;
 }
 
+/// Forces that the list lost before are still missing.
+PALPATE_INLINE Status Candidates::update_again(const TissueView& tissue, std::span<const ContactTool> tools,
+                                               SurfaceDisplacement& displacement) noexcept {
+  const bool lost = lost_forces_;
+  forget();
+  const Status status = update(tissue, tools, displacement);
+  lost_forces_ = lost_forces_ || lost;
+  valid_ = valid_ && !lost_forces_;
+  return status;
+}
+
 PALPATE_INLINE void Candidates::prepare(const TissueView& tissue, std::span<const ContactTool> tools,
                                         SurfaceDisplacement& displacement) noexcept {
   if (!valid_ || search_.ends) return;
@@ -192,7 +203,8 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
         moved.include(displacement.position(tissue, v));
         if (subfacet_->is_known(v)) shown = std::max(shown, displacement.shown(*subfacet_, v).norm());
       }
-      const double within = near - search.reach + shown + displacement.largest_bulge(tissue, samples_);
+      const double bulge = displacement.largest_bulge(tissue, *subfacet_, samples_, surface.normal(triangle));
+      const double within = near - search.reach + shown + bulge;
       if (moved.squared_distance(tool.middle()) > within * within) return;
     }
   }

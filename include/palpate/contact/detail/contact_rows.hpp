@@ -54,7 +54,7 @@ class ContactRows {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
     return remaining_[at(row)] < 0.3 || (point.is_disturbed && !point.is_known() && !point.is_fixed);
   }
-  /// How many points of equal area have the print of every tool, from the forces f of its rows and their normals n:
+  /// How many points of equal area the print of every tool has, from the forces f of its rows and their normals n:
   /// 9/8 |sum f n|^2 / sum f^2, which is their number for the pressure of Hertz. Points that begin to press, or have
   /// almost faded out, count little. Of a tool between two surfaces it is about the number of points on one of them.
   std::array<double, maximum_tools> points_of_print() const noexcept;

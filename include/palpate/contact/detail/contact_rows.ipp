@@ -153,7 +153,7 @@ PALPATE_INLINE std::array<int, maximum_tools> ContactRows::count_pressing() cons
 }
 
 PALPATE_INLINE std::array<double, maximum_tools> ContactRows::points_of_print() const noexcept {
-  constexpr double of_hertz = 9.0 / 8.0, least_part = 0.25;
+  constexpr double of_hertz = 9.0 / 8.0, least_part = 0.5;
   std::array<double, maximum_tools> sums{}, squares{}, points{};
   std::array<Vector3, maximum_tools> resultants;
   resultants.fill(Vector3::Zero());

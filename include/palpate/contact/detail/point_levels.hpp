@@ -18,12 +18,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// of the rows is for the others. No allocation.
 class PointLevels {
  public:
-  static constexpr double finest_spacing = 0.125;                ///< of the lattice on long facets, in radii
-  static constexpr double least_spacing = 0.7 * finest_spacing;  ///< of a tool's points, where the mesh has them
-  static constexpr double coarsest_spacing = 0.5;                ///< in ContactTool::point_scale
+  static constexpr double finest_spacing = 0.125;  ///< of the lattice on long facets, in radii
+  static constexpr double coarsest_spacing = 0.5;  ///< in ContactTool::point_scale
   static constexpr double crowded_spacing = std::numbers::sqrt2 * coarsest_spacing;  ///< without rows for that
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
 
+  /// The same tools continue with fresh points, whose finest level may differ by a little.
+  void move_to(PointLevels& fresh) const noexcept;
   /// Back to the state after construction.
   void reset() noexcept { *this = {}; }
   struct Limits {
@@ -41,8 +42,10 @@ class PointLevels {
   int share(int tool) const noexcept { return share_[at(tool)]; }
   bool has_areas() const noexcept { return limits_.has_areas; }
   double level(int tool) const noexcept { return level_[at(tool)]; }
-  /// The level of a tool that begins to press.
-  double finest(int tool) const noexcept { return first_[at(tool)]; }
+  /// Whether a tool had fewer points in the last tick than one that begins to press.
+  bool had_fewer(int tool) const noexcept { return used_[at(tool)] > touch_[at(tool)]; }
+  /// Whether a tool has no level above its own.
+  bool is_coarsest(int tool) const noexcept { return !(level_[at(tool)] < crowded_[at(tool)]); }
   /// The last level that has all points of a tool.
   int first(int tool) const noexcept { return static_cast<int>(level_[at(tool)]); }
   /// The last level that has all points that a tool has to know: without areas, points of the next finer level show how
@@ -51,9 +54,11 @@ class PointLevels {
   /// The level of a tool that begins to press with this area [m^2], of which parts may not press in the end.
   void start(const ContactSamples& samples, int tool, double area) noexcept;
 
-  /// Whether a list of candidates has all points near a tool, and how full it is (0 to 1). Where points are missing,
-  /// the tool gets a higher level, which it keeps until twice as many have room.
-  void note_list(int tool, bool is_complete, double full) noexcept;
+  /// Where a list of candidates has not all points near the tools, the tool with the most of them gets a higher level,
+  /// and keeps it until twice as many have room. True where it has it at once: a tool that does not press yet.
+  bool note_full_list(int tool) noexcept;
+  /// Points of a tool in a list, and room that is left.
+  void note_room(int tool, int points, int room) noexcept;
   /// Forgets the points noted before: those of the last round of a tick count.
   void begin_round() noexcept;
   /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m].
@@ -72,17 +77,21 @@ class PointLevels {
   // From these rows on a tool gets a higher level: a part of its share, and as many per wanted point, so that it hardly
   // depends on what other tools need.
   static constexpr double most_rows = 0.9, rows_per_point = 2.4;
-  static constexpr double longest_step = 0.1, full_step = 0.5;  // levels per tick; full: before rows are missing
+  static constexpr double longest_step = 0.1,
+                          full_step = 0.5;   // levels per tick; full: before rows or room are missing
+  static constexpr double many_rows = 0.65;  // part of its share from which on it goes there in full steps
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
   double step(std::size_t tool, int used, double points) noexcept;
   double least_with_rows(std::size_t tool, bool is_many, double rows) noexcept;
-  double first_level(std::size_t tool) const noexcept { return std::max(first_[tool], listed_[tool]); }
+  double touch_level(std::size_t tool) const noexcept { return std::max(touch_[tool], with_room_[tool]); }
   double next_goal(std::size_t tool, double size) const noexcept;
 
   std::array<int, maximum_tools> share_{}, had_{}, needed_{}, left_out_{}, skipped_{};
-  std::array<double, maximum_tools> radius_{}, level_{}, goal_{}, least_{}, first_{}, most_{}, crowded_{}, listed_{};
+  std::array<double, maximum_tools> radius_{}, level_{}, goal_{}, least_{}, touch_{}, most_{}, crowded_{};
+  std::array<double, maximum_tools> with_room_{};  // the least level with room in the list of candidates
+  std::array<double, maximum_tools> used_{};       // the levels of the last tick
   /// The last time that the points of a tool did not fit.
   struct Overflow {
     double level = 0.0;  ///< at which they fit

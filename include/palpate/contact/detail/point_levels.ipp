@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -21,14 +20,16 @@ PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const
     if (!(radius > 0.0)) continue;
     const double last = samples.levels() - 1.0;
     const auto whole = [&](double spacing) { return std::round(samples.level_with(spacing)); };
-    least_[t] = has_areas ? std::floor(samples.level_with(least_spacing * radius)) : 0.0;
-    first_[t] = has_areas ? std::floor(samples.level_with(finest_spacing * radius)) : 0.0;
+    touch_[t] = has_areas ? std::floor(samples.level_with(finest_spacing * radius)) : 0.0;
+    least_[t] = std::max(0.0, touch_[t] - 1.0);
     most_[t] = has_areas ? std::max(least_[t], whole(coarsest_spacing * scale))
                          : samples.level_with(coarsest_of_mesh * radius);
     crowded_[t] = has_areas ? std::min(last, std::max(most_[t], whole(crowded_spacing * scale))) : most_[t];
-    if (begins) level_[t] = goal_[t] = first_[t], listed_[t] = 0.0;
+    if (begins) level_[t] = goal_[t] = touch_[t], with_room_[t] = 0.0;
     level_[t] = std::clamp(level_[t], least_[t], crowded_[t]);
     goal_[t] = std::clamp(goal_[t], least_[t], crowded_[t]);
+    with_room_[t] = std::min(with_room_[t], crowded_[t]);
+    overflow_[t].level = std::min(overflow_[t].level, crowded_[t]);
   }
   divide();
   begin_round();
@@ -61,7 +62,8 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
     if (radius_[t] > 0.0) share_[t] += rest / tools;
 }
 
-/// A tool has up to 1.6 times as many, and while points fade in twice.
+/// A tool has up to 1.6 times as many, and while points fade in up to twice that: rows for all of them where it needs
+/// few, otherwise it gets a higher level.
 PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
   return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
 }
@@ -73,7 +75,7 @@ PALPATE_INLINE double PointLevels::next_goal(std::size_t tool, double size) cons
   double goal = goal_[tool];
   while (goal < most_[tool] && size * std::exp2(-goal) > too_many * wanted(tool)) goal += 1.0;
   while (goal > least_[tool] && size * std::exp2(-goal) < too_few * wanted(tool)) goal -= 1.0;
-  return std::clamp(goal, std::max(least_[tool], listed_[tool]), crowded_[tool]);
+  return std::clamp(goal, std::max(least_[tool], with_room_[tool]), crowded_[tool]);
 }
 
 PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, double area) noexcept {
@@ -85,15 +87,27 @@ PALPATE_INLINE void PointLevels::start(const ContactSamples& samples, int tool, 
   level_[at(tool)] = goal;
 }
 
-PALPATE_INLINE void PointLevels::note_list(int tool, bool is_complete, double full) noexcept {
-  constexpr double room_for_twice = 0.4;
+PALPATE_INLINE bool PointLevels::note_full_list(int tool) noexcept {
   const std::size_t t = at(tool);
-  if (!limits_.has_areas || !(radius_[t] > 0.0)) return;
-  if (!is_complete)
-    listed_[t] = std::min(first(tool) + 1.0, crowded_[t]);
-  else if (full < room_for_twice && first(tool) <= listed_[t])
-    listed_[t] = std::max(0.0, listed_[t] - 1.0);
-  if (needed_[t] == 0) level_[t] = goal_[t] = std::max(level_[t], listed_[t]);
+  if (!limits_.has_areas || !(radius_[t] > 0.0)) return false;
+  with_room_[t] = std::min(first(tool) + 1.0, crowded_[t]);
+  if (needed_[t] > 0 || !(level_[t] < with_room_[t])) return false;
+  level_[t] = goal_[t] = with_room_[t];
+  return true;
+}
+
+PALPATE_INLINE void PointLevels::note_room(int tool, int points, int room) noexcept {
+  constexpr double some_more = 1.2;
+  const std::size_t t = at(tool);
+  if (first(tool) > with_room_[t] || !(some_more * points < room)) return;
+  with_room_[t] = std::max(0.0, with_room_[t] - 1.0);
+  if (needed_[t] == 0) level_[t] = goal_[t] = std::max(level_[t], with_room_[t]);
+}
+
+PALPATE_INLINE void PointLevels::move_to(PointLevels& fresh) const noexcept {
+  fresh = *this;
+  fresh.overflow_ = {};
+  fresh.with_room_ = {};
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -133,19 +147,21 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double point
   const bool has_many = used > rows_per_point * limits_.wanted && level_[tool] < most_[tool];
   goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full || has_many, rows));
   const double wanted = goal_[tool] - level_[tool];
-  return left_out_[tool] > 0 ? std::max(1.0, wanted)
-                             : std::clamp(wanted, -longest_step, is_full ? full_step : longest_step);
+  if (left_out_[tool] > 0) return std::max(1.0, wanted);
+  const bool is_urgent = used > many_rows * share_[tool] || level_[tool] < with_room_[tool];
+  return std::clamp(wanted, -longest_step, is_urgent ? full_step : longest_step);
 }
 
 PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& used,
                                           const std::array<double, maximum_tools>& points,
                                           const std::array<int, maximum_tools>& grasped) noexcept {
   had_ = share_;
+  used_ = level_;
   for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t] + grasped[t];
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
-      level_[t] = goal_[t] = first_level(t);
+      level_[t] = goal_[t] = touch_level(t);
       overflow_[t] = {};
       continue;
     }

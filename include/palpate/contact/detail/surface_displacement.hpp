@@ -40,7 +40,6 @@ class SurfaceDisplacement {
   void forget() noexcept { generation_ += 2; }
   void clear() noexcept {
     count_ = load_count_ = 0;
-    pulls_ = false;
     change_loads();
   }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
@@ -60,7 +59,7 @@ class SurfaceDisplacement {
   bool has_loads() const noexcept { return load_count_ > 0; }
 
   /// Takes `part` of these forces and 1 - `part` of those of `before`. Forces beyond the capacity are dropped.
-  void blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
+  void blend(const TissueView& tissue, SurfaceDisplacement& before, double part, const SubfacetCompliance* subfacet,
              const ContactSamples& samples) noexcept;
 
   /// Displacement of a vertex under the forces [m].
@@ -76,17 +75,21 @@ class SurfaceDisplacement {
   /// half-space [m]. O(loads).
   Vector3 at_point(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSample& sample,
                    const HalfSpacePoint& point, int number) noexcept;
-  /// The part of `at_point` without the displacement of the half-space, which is inward under loads that press [m]. An
-  /// interpolation of values of the three vertices: O(1) once they are known.
+  /// The part of `at_point` without the displacement of the half-space [m]. An interpolation of values of the three
+  /// vertices: O(1) once they are known.
   Vector3 without_half_space(const TissueView& tissue, const SubfacetCompliance& subfacet,
                              const ContactSample& sample) noexcept;
   /// What the mesh shows of the half-space at a vertex under the loads [m]. O(1) once it is known.
   const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
-  /// How far outward a point may be from there [m]: under loads that pull as far as the largest dent of a loaded point,
-  /// otherwise a tenth of it, for what loads along the surface move beside them. O(loads) after the forces have
-  /// changed, O(1) otherwise.
-  double largest_bulge(const TissueView& tissue, const ContactSamples& samples) noexcept {
-    return (pulls_ ? 1.0 : 0.1) * largest_dent(tissue, samples);
+  /// How far outward the half-space may move a point with this normal at rest from there [m]. Loads that press on a
+  /// surface that faces as the point does move it inward: a tenth of the largest dent is allowed, for what loads along
+  /// the surface move beside them. Where loads pull, are more along the surface than into it, or press walls that face
+  /// elsewhere, it may be as far as the half-space moves a loaded point. O(loads) after the forces have changed, O(1)
+  /// otherwise.
+  double largest_bulge(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSamples& samples,
+                       const Vector3& normal) noexcept {
+    measure_dents(tissue, subfacet, samples);
+    return is_press_ && normal.dot(pressed_normal_) > aligned ? 0.1 * largest_dent_ : largest_half_space_;
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -109,8 +112,9 @@ class SurfaceDisplacement {
     generation_ += 2;
     ++load_generation_;
   }
-  /// The largest difference of a loaded point from where the vertices alone put it [m].
-  double largest_dent(const TissueView& tissue, const ContactSamples& samples) noexcept;
+  static constexpr double aligned = 0.5;  // cosine of 60 degrees
+  void measure_dents(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                     const ContactSamples& samples) noexcept;
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
   /// Of the points with loads [m].
   double longest_path() const noexcept;
@@ -131,8 +135,11 @@ class SurfaceDisplacement {
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 2, revision_ = 0, dent_stamp_ = 0;
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
-  double largest_dent_ = 0.0;
-  bool pulls_ = false;  // a load is directed outward
+  // Of loaded points: the largest difference from where the vertices alone put them, and what the half-space moves them
+  // at most [m]; the mean of their normals at rest; whether all loads press, on surfaces that face about as that mean.
+  double largest_dent_ = 0.0, largest_half_space_ = 0.0;
+  Vector3 pressed_normal_ = Vector3::Zero();
+  bool is_press_ = false;
 };
 
 }}  // namespace palpate

@@ -59,7 +59,6 @@ PALPATE_INLINE void SurfaceDisplacement::add(int vertex, const Vector3& force, i
 PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const ContactSample& sample) noexcept {
   if (load_count_ == static_cast<int>(loads_.size())) return;
   half_space_.set(load_count_, load.point, load.force);
-  pulls_ = pulls_ || load.force.dot(load.point.normal) > 0.0;
   sample_[static_cast<std::size_t>(load_count_)] = load.sample;
   loads_[static_cast<std::size_t>(load_count_++)] = load;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -118,19 +117,32 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView&
   return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
 }
 
-PALPATE_INLINE double SurfaceDisplacement::largest_dent(const TissueView& tissue,
-                                                        const ContactSamples& samples) noexcept {
-  if (std::exchange(dent_stamp_, generation_) == generation_) return largest_dent_;
-  largest_dent_ = 0.0;
-  for (int i = 0; i < load_count_; ++i) {
-    const PointLoad& load = loads_[static_cast<std::size_t>(i)];
+/// Loads of less than a twentieth of the largest do not count for the directions: points at the rim of a deep print.
+PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                                                       const ContactSamples& samples) noexcept {
+  constexpr double small = 0.05;
+  if (std::exchange(dent_stamp_, generation_) == generation_) return;
+  largest_dent_ = largest_half_space_ = 0.0;
+  pressed_normal_.setZero();
+  is_press_ = true;
+  double largest = 0.0;
+  const std::span<const PointLoad> loads(loads_.data(), static_cast<std::size_t>(load_count_));
+  for (const PointLoad& load : loads) {
     const ContactSample& sample = samples[load.sample];
-    Vector3 dent = load.moved;
+    Vector3 mesh = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a)
-      if (sample.weights[a] != 0.0) dent -= sample.weights[a] * at(tissue, sample.vertices[a]);
-    largest_dent_ = std::max(largest_dent_, dent.norm());
+      if (sample.weights[a] != 0.0) mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
+    largest_dent_ = std::max(largest_dent_, (load.moved - mesh).norm());
+    const Vector3 moved = load.moved - without_half_space(tissue, subfacet, sample);
+    largest_half_space_ = std::max(largest_half_space_, moved.norm());
+    largest = std::max(largest, load.force.norm());
+    pressed_normal_ += load.force.norm() * load.point.normal;
   }
-  return largest_dent_;
+  pressed_normal_.normalize();
+  for (const PointLoad& load : loads)
+    if (const double force = load.force.norm(); force > small * largest)
+      is_press_ = is_press_ && -load.force.dot(load.point.normal) > aligned * force &&
+                  load.point.normal.dot(pressed_normal_) > aligned;
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
@@ -167,8 +179,15 @@ PALPATE_INLINE void SurfaceDisplacement::blend_loads(const SurfaceDisplacement& 
 
 /// The dents of both are linear in their forces: their blended sum is a bound for the largest.
 PALPATE_INLINE void SurfaceDisplacement::blend(const TissueView& tissue, SurfaceDisplacement& before, double part,
+                                               const SubfacetCompliance* subfacet,
                                                const ContactSamples& samples) noexcept {
-  largest_dent_ = part * largest_dent(tissue, samples) + (1.0 - part) * before.largest_dent(tissue, samples);
+  if (subfacet != nullptr) {
+    measure_dents(tissue, *subfacet, samples);
+    before.measure_dents(tissue, *subfacet, samples);
+    largest_dent_ = part * largest_dent_ + (1.0 - part) * before.largest_dent_;
+    largest_half_space_ = part * largest_half_space_ + (1.0 - part) * before.largest_half_space_;
+    is_press_ = is_press_ && before.is_press_ && pressed_normal_.dot(before.pressed_normal_) > aligned;
+  }
   change_loads();
   dent_stamp_ = generation_;
   blend_loads(before, part, samples);
