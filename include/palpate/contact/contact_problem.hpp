@@ -73,9 +73,7 @@ class ContactProblem {
   /// of the compliance is missing: what an assumed one does to the force has no bound. No allocation; O(contacts).
   ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) noexcept;
   /// Whether a tool has fewer points than the surface has for it, because they suffice or for want of rows.
-  bool has_fewer_points(std::size_t t) const noexcept {
-    return levels_.had_fewer(static_cast<int>(t));
-  }
+  bool has_fewer_points(std::size_t t) const noexcept { return levels_.had_fewer(static_cast<int>(t)); }
   /// What the error of a force on a tool is relative to [N]: detail/contact_rows.hpp.
   double scale_of_force(std::size_t t, double force) const noexcept {
     return force_scale(force, rows_.pressing_force(t));

@@ -125,8 +125,8 @@ inline void ContactProblem::set_levels(Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) candidates_.set_level(t, levels_.known(static_cast<int>(t)));
 }
 
-/// Where the list has no room for all points near the tools, the tool with the most of them gets a higher level: at once
-/// where it does not press, and the list is built again; otherwise in the next ticks.
+/// Where the list has no room for all points near the tools, the tool with the most of them gets a higher level: at
+/// once where it does not press, and the list is built again; otherwise in the next ticks.
 PALPATE_INLINE Status ContactProblem::update_candidates(const TissueView& tissue, Tools tools) noexcept {
   constexpr int most_builds = 4;
   Status status = candidates_.update(tissue, tools, displacement_);
