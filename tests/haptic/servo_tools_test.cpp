@@ -59,6 +59,31 @@ TEST_CASE("a tool of any number that lost the surface is placed again, while the
   }
 }
 
+TEST_CASE("a single point that is grasped is pulled as hard beside another tool as alone", "[haptic][servo][grasp]") {
+  test::Pad pad = test::make_pad();
+  ServoOptions options;
+  options.grasp_buttons = 1;
+  options.contact.grasp_radius = 0.0;
+  double alone = 0.0;
+  for (const std::size_t tools : {1u, 2u}) {
+    test::ServoSession session(pad, options, tools);
+    if (tools == 2) session.states[1].position = Vector3(0.022, 0.017, test::pad_height + 2.0 * test::sphere_radius);
+    session.press(0.5e-3);
+    session.states[0].buttons = 1;
+    session.tick();
+    std::array<double, 2> pulls{};
+    for (double& pull : pulls) {
+      session.move(session.states[0].position + Vector3(0.0, 0.0, 1e-3), 50);
+      pull = -session.servo.contact_force(0)[2];
+    }
+    const double stiffness = (pulls[1] - pulls[0]) / 1e-3;
+    // At least a third of that of a flat punch of the same area on a half-space.
+    CHECK(stiffness > 2.0 / 3.0 * 1e4 / (1.0 - 0.3 * 0.3) * 0.14 * test::sphere_radius);
+    if (tools == 1) alone = stiffness;
+    CHECK(std::abs(stiffness - alone) <= 1e-3 * alone);
+  }
+}
+
 TEST_CASE("the sum of a snapshot's contacts is the contact force, also with grasped points", "[haptic][servo][grasp]") {
   ServoOptions options;
   options.grasp_buttons = 1;

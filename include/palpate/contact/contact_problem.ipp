@@ -565,7 +565,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     if (!tool.active || !tool.grasping) g.release();
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
-    constexpr double grasped_spacing = 0.25;  // radii; of a point that has no area at this level
+    constexpr double grasped_spacing = 0.25;  // radii; a single point holds at least so much of the surface
     Candidate* nearest = nullptr;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
@@ -573,8 +573,8 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
       if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
     }
     if (nearest == nullptr) continue;
-    nearest->area = std::max(nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)));
-    if (!(nearest->area > 0.0)) nearest->area = std::pow(grasped_spacing * tool.radius, 2);
+    nearest->area = std::max({nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)),
+                              std::pow(grasped_spacing * tool.radius, 2)});
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     takes_pad[t] = parameters_.grasp_radius > 0.0 && most > 2;
     if (takes_pad[t])
