@@ -73,7 +73,7 @@ class PointLevels {
   double deepest() const noexcept { return deepest_; }
 
  private:
-  static constexpr int headroom = 16;  // rows above those of the last tick for a tool that needs less than its share
+  static constexpr int headroom = 16;  // rows above those of the last tick: as many, or twice as many as it had
   // From these rows on a tool gets a higher level: a part of its share, and as many per wanted point, so that it hardly
   // depends on what other tools need.
   static constexpr double most_rows = 0.9, rows_per_point = 2.4;

@@ -46,8 +46,9 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
     given = false;
     const int equal = rest / tools;
     for (std::size_t t = 0; t < maximum_tools; ++t) {
-      if (!open[t] || needed_[t] + headroom >= equal) continue;
-      share_[t] = needed_[t] + headroom;
+      const int enough = needed_[t] + std::max(headroom, 2 * needed_[t]);  // a level below has over twice as many
+      if (!open[t] || enough >= equal) continue;
+      share_[t] = enough;
       rest -= share_[t];
       --tools;
       open[t] = false;
