@@ -77,9 +77,8 @@ class PointLevels {
   // From these rows on a tool gets a higher level: a part of its share, and as many per wanted point, so that it hardly
   // depends on what other tools need.
   static constexpr double most_rows = 0.9, rows_per_point = 2.4;
-  static constexpr double longest_step = 0.1,
-                          full_step = 0.5;   // levels per tick; full: before rows or room are missing
-  static constexpr double many_rows = 0.65;  // part of its share from which on it goes there in full steps
+  // Levels per tick: usually, and where its rows, from this part of its share on, or room in the list may not suffice.
+  static constexpr double longest_step = 0.1, full_step = 0.5, many_rows = 0.65;
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
