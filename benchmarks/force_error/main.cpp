@@ -47,7 +47,7 @@ Choice choice_of(int argc, char** argv) {
   return choice;
 }
 
-/// Tools of up to two facets press the mesh as given; for larger ones it is refined at the places. Capsule and box
+/// Tools of up to two facets press the mesh as given; for larger ones it is refined at the places. Capsule and plate
 /// press two places for two of the radii. The error is measured for one Poisson ratio.
 void add_cells(Table& table, const TestBody& body, double poisson_ratio, double per_facet) {
   const double given = mean_facet(body), radius = std::min(per_facet, 2.0) * given;
@@ -76,7 +76,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   const std::vector<TestBody> bodies = test_bodies();
-  const TestBody& block = bodies[2];
+  const TestBody& block =
+      *std::find_if(bodies.begin(), bodies.end(), [](const TestBody& b) { return b.name == "block"; });
   for (const double poisson_ratio : choice.poisson_ratios) {
     const double radius = mean_facet(block);
     print_truth_error({block, poisson_ratio, radius, radius, places_on(block, radius, 2.0 * radius, 7, 2), true});

@@ -107,6 +107,20 @@ TEST_CASE("where a list has no room for all points near a tool, the tool has few
   CHECK(levels.level(0) == first);
 }
 
+TEST_CASE("on other points a tool keeps its level, and does not remember where a list was full", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  PointLevels levels;
+  for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
+  const double first = levels.level(0);
+  levels.note_full_list(0);
+  for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
+  REQUIRE(levels.level(0) == first + 1.0);
+  levels.change_points();
+  CHECK(levels.level(0) == first + 1.0);
+  for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
+  CHECK(levels.level(0) == first);
+}
+
 TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
   PointLevels levels;

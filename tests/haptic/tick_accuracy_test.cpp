@@ -143,8 +143,7 @@ TEST_CASE("a sphere in a slot whose contact forces cancel is neither unsettled n
     for (int i = 0; i < 400; ++i) {
       state.time += 1e-3;
       state.position = slot.centre + 1e-6 * std::sin(0.1 * i) * Vector3::UnitZ();
-      const Status status = servo.tick(state).status;
-      if (i >= 40) flags.count(status);  // it begins inside: points for which there are no rows, and the ramp
+      flags.count(servo.tick(state).status);
       double sum = 0.0;
       for (const ToolContact& c : servo.contacts()) sum += c.force;
       pressed = std::max(pressed, sum);
@@ -155,7 +154,7 @@ TEST_CASE("a sphere in a slot whose contact forces cancel is neither unsettled n
     REQUIRE(pressed > 0.01);
     REQUIRE(largest < 0.1 * pressed);
     CHECK(flags[StatusFlag::solver_not_converged] == 0);
-    CHECK(flags[StatusFlag::degraded_model] == 0);
+    CHECK(flags[StatusFlag::degraded_model] <= 1);  // it begins inside: more points than rows in the first tick
     CHECK(flags[StatusFlag::large_displacement] == 0);
     CHECK(deepest <= 2.0 * depth);
   }

@@ -22,6 +22,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// rounds and candidates.
 class ContactProblem {
  public:
+  /// Errors above this part of a force are flagged.
+  static constexpr double flagged_error = 0.1;
   /// Largest ContactParameters::capacity.
   static constexpr int maximum_capacity = 1024;
 
@@ -72,7 +74,8 @@ class ContactProblem {
   /// model, and from what was omitted in the tick. The bound is infinite where nothing was measured, and while a column
   /// of the compliance is missing: what an assumed one does to the force has no bound. No allocation; O(contacts).
   ForceError force_error(const TissueView& tissue, std::size_t t, const ContactTool& tool) noexcept;
-  /// Whether a tool has fewer points than the surface has for it, because they suffice or for want of rows.
+  /// Whether a tool had fewer points in the last tick than when it began to press: they suffice, or rows or room were
+  /// missing.
   bool has_fewer_points(std::size_t t) const noexcept { return levels_.had_fewer(static_cast<int>(t)); }
   /// What the error of a force on a tool is relative to [N]: detail/contact_rows.hpp.
   double scale_of_force(std::size_t t, double force) const noexcept {
@@ -101,7 +104,6 @@ class ContactProblem {
   static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
   static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest push
-  static constexpr double coarse_error = 0.1;          // of a force, that is flagged
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);

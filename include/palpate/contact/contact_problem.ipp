@@ -350,10 +350,10 @@ inline double ContactProblem::distance_from_support(const LinearModelError& mode
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
                                                      const BodyContacts& contacts, std::size_t t,
                                                      SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
-  constexpr double few = 0.1;
   const LinearModelError& model = *body.model;
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
-  if (late_ || missing_depth() > 0.0 || (has_fewer_points(t) && error_of_points(t) > few)) sphere.force = infinity;
+  const bool is_sparse = has_fewer_points(t) && error_of_points(t) > flagged_error;
+  if (late_ || missing_depth() > 0.0 || is_sparse) sphere.force = infinity;
   double sum = 0.0;
   for (const Contact& c : contacts.rows) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
@@ -403,7 +403,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   return on_coarse > most * all;
 }
 
-/// What a contact of so few points may be in error, relative to the force: measured with spheres on meshes whose nodes
+/// The part of the force by which a contact of few points may be wrong: measured with spheres on meshes whose nodes
 /// were renumbered, which have other points, and with few rows: up to 3 / n^2 for the points of the print
 /// (ContactRows::points_of_print). Points without half-space have no area, and stand for themselves.
 PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexcept {
@@ -504,7 +504,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
     if (tool.half_length == 0.0) continue;
     const double coarse = error_of_sphere(surface, body, contacts, t, tool);
     measured = measured && coarse < infinity;
-    coarse_[t] = coarse_[t] || (coarse > coarse_error && coarse < infinity);
+    coarse_[t] = coarse_[t] || (coarse > flagged_error && coarse < infinity);
   }
   if (presses_beside_pad(t)) error.parts.mesh = infinity;
   if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
@@ -536,7 +536,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   start_.renumber_loads(candidates_.samples(), renumber);
   for (Grasp& g : grasps_) g.move_to(candidates_, fresh.candidates_.samples(), surface);
   rows_.move_to(fresh.rows_);
-  levels_.move_to(fresh.levels_);
+  levels_.change_points();
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
 }

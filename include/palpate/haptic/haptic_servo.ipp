@@ -15,8 +15,6 @@ static_assert(Servo<HapticServo>);
 
 namespace detail {
 
-inline constexpr double flagged_error = 0.1;  // of the force
-
 inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   ToolRadii radii(no_sphere, 0.0);
   for (const ContactTool& tool : tools) {
@@ -334,7 +332,7 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   lost_contact_[i] = !blades_[i] && has_lost_contact(i);
   if (lost_contact_[i]) forces_[i].status.set(StatusFlag::lost_contact);
   const ForceError& error = errors_[i];
-  const double large = detail::flagged_error * problem_.scale_of_force(i, error.force);
+  const double large = ContactProblem::flagged_error * problem_.scale_of_force(i, error.force);
   const auto is_large = [&](double part) { return part > large && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);
   if (is_large(error.parts.merged) && problem_.has_fewer_points(i)) forces_[i].status.set(StatusFlag::degraded_model);

@@ -178,8 +178,8 @@ class Candidates {
   inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
                                           const ContactSample& sample) noexcept;
   struct Bound {
-    Vector3 place;
-    double bulge;
+    Vector3 place;       ///< without the half-space [m]
+    double bulge = 0.0;  ///< how far outward of it the point may be [m]
   };
   Bound bound(const TissueView& tissue, SurfaceDisplacement& displacement, int sample) const noexcept;
   inline double known_gap(int tool, int sample) const noexcept;

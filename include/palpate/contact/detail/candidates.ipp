@@ -164,7 +164,7 @@ PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, Sur
   return c.moved_to;
 }
 
-/// Where a point is without what the half-space moves it, and how far outward it may be from there.
+/// O(1) once the vertices' displacements are known.
 PALPATE_INLINE Candidates::Bound Candidates::bound(const TissueView& tissue, SurfaceDisplacement& displacement,
                                                    int number) const noexcept {
   const ContactSample& sample = samples_[number];

@@ -23,10 +23,11 @@ class PointLevels {
   static constexpr double crowded_spacing = std::numbers::sqrt2 * coarsest_spacing;  ///< without rows for that
   static constexpr double coarsest_of_mesh = 0.8;  ///< without areas; a sphere does not fall through points within two
 
-  /// The same tools continue with fresh points, whose finest level may differ by a little.
-  void move_to(PointLevels& fresh) const noexcept;
   /// Back to the state after construction.
   void reset() noexcept { *this = {}; }
+  /// The tools continue on other points, whose finest level may differ a little: levels stay, what is known of rows and
+  /// room for others is forgotten.
+  void change_points() noexcept;
   struct Limits {
     int capacity = 0;       ///< rows of all tools
     int wanted = 0;         ///< points of a press

@@ -63,8 +63,8 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
     if (radius_[t] > 0.0) share_[t] += rest / tools;
 }
 
-/// A tool has up to 1.6 times as many, and while points fade in up to twice that: rows for all of them where it needs
-/// few, otherwise it gets a higher level.
+/// The number of points for which a level is chosen. A tool whose share is small gets half of it, so that there are
+/// rows for the points of the rim, and while points fade in.
 PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
   return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
 }
@@ -105,10 +105,9 @@ PALPATE_INLINE void PointLevels::note_room(int tool, int points, int room) noexc
   if (needed_[t] == 0) level_[t] = goal_[t] = std::max(level_[t], with_room_[t]);
 }
 
-PALPATE_INLINE void PointLevels::move_to(PointLevels& fresh) const noexcept {
-  fresh = *this;
-  fresh.overflow_ = {};
-  fresh.with_room_ = {};
+PALPATE_INLINE void PointLevels::change_points() noexcept {
+  overflow_ = {};
+  with_room_ = {};
 }
 
 PALPATE_INLINE void PointLevels::begin_round() noexcept {
@@ -147,10 +146,10 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double point
   const double size = points * std::exp2(level_[tool]), rows = used * std::exp2(std::floor(level_[tool]));
   const bool has_many = used > rows_per_point * limits_.wanted && level_[tool] < most_[tool];
   goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full || has_many, rows));
-  const double wanted = goal_[tool] - level_[tool];
-  if (left_out_[tool] > 0) return std::max(1.0, wanted);
+  const double change = goal_[tool] - level_[tool];
+  if (left_out_[tool] > 0) return std::max(1.0, change);
   const bool is_urgent = used > many_rows * share_[tool] || level_[tool] < with_room_[tool];
-  return std::clamp(wanted, -longest_step, is_urgent ? full_step : longest_step);
+  return std::clamp(change, -longest_step, is_urgent ? full_step : longest_step);
 }
 
 PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& used,

@@ -89,7 +89,7 @@ class SurfaceDisplacement {
   double largest_bulge(const TissueView& tissue, const SubfacetCompliance& subfacet, const ContactSamples& samples,
                        const Vector3& normal) noexcept {
     measure_dents(tissue, subfacet, samples);
-    return is_press_ && normal.dot(pressed_normal_) > aligned ? 0.1 * largest_dent_ : largest_half_space_;
+    return only_presses_ && normal.dot(pressed_normal_) > aligned ? 0.1 * largest_dent_ : largest_half_space_;
   }
   /// Deformed position of a vertex [m].
   Vector3 position(const TissueView& tissue, int vertex) noexcept;
@@ -139,7 +139,7 @@ class SurfaceDisplacement {
   // at most [m]; the mean of their normals at rest; whether all loads press, on surfaces that face about as that mean.
   double largest_dent_ = 0.0, largest_half_space_ = 0.0;
   Vector3 pressed_normal_ = Vector3::Zero();
-  bool is_press_ = false;
+  bool only_presses_ = false;
 };
 
 }}  // namespace palpate

@@ -124,7 +124,7 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
   if (std::exchange(dent_stamp_, generation_) == generation_) return;
   largest_dent_ = largest_half_space_ = 0.0;
   pressed_normal_.setZero();
-  is_press_ = true;
+  only_presses_ = true;
   double largest = 0.0;
   const std::span<const PointLoad> loads(loads_.data(), static_cast<std::size_t>(load_count_));
   for (const PointLoad& load : loads) {
@@ -141,8 +141,8 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
   pressed_normal_.normalize();
   for (const PointLoad& load : loads)
     if (const double force = load.force.norm(); force > small * largest)
-      is_press_ = is_press_ && -load.force.dot(load.point.normal) > aligned * force &&
-                  load.point.normal.dot(pressed_normal_) > aligned;
+      only_presses_ = only_presses_ && -load.force.dot(load.point.normal) > aligned * force &&
+                      load.point.normal.dot(pressed_normal_) > aligned;
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
@@ -186,7 +186,7 @@ PALPATE_INLINE void SurfaceDisplacement::blend(const TissueView& tissue, Surface
     before.measure_dents(tissue, *subfacet, samples);
     largest_dent_ = part * largest_dent_ + (1.0 - part) * before.largest_dent_;
     largest_half_space_ = part * largest_half_space_ + (1.0 - part) * before.largest_half_space_;
-    is_press_ = is_press_ && before.is_press_ && pressed_normal_.dot(before.pressed_normal_) > aligned;
+    only_presses_ = only_presses_ && before.only_presses_ && pressed_normal_.dot(before.pressed_normal_) > aligned;
   }
   change_loads();
   dent_stamp_ = generation_;
