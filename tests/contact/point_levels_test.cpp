@@ -107,6 +107,18 @@ TEST_CASE("where a list has no room for all points near a tool, the tool has few
   CHECK(levels.level(0) == first);
 }
 
+TEST_CASE("two tools whose prints grow by two thirds in a tick have rows for all points", "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  for (double first = 1e-7; first < 2e-7; first *= 1.05) {
+    PointLevels levels;
+    for (double area = first; area < 6e-6; area *= 1.67) {
+      tick(levels, samples, {area, area}, 96);
+      CAPTURE(first, area, levels.level(0));
+      CHECK(levels.deepest() == 0.0);
+    }
+  }
+}
+
 TEST_CASE("on other points a tool keeps its level, and does not remember where a list was full", "[contact][levels]") {
   const ContactSamples samples = plane_of_samples();
   PointLevels levels;

@@ -83,7 +83,7 @@ class PointLevels {
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
   int wanted(std::size_t tool) const noexcept;
-  double step(std::size_t tool, int used, double points) noexcept;
+  double step(std::size_t tool, int used, double growth, double points) noexcept;
   double least_with_rows(std::size_t tool, bool is_many, double rows) noexcept;
   double touch_level(std::size_t tool) const noexcept { return std::max(touch_[tool], with_room_[tool]); }
   double next_goal(std::size_t tool, double size) const noexcept;

@@ -139,15 +139,16 @@ PALPATE_INLINE double PointLevels::least_with_rows(std::size_t tool, bool is_man
 }
 
 /// Without areas a level is whole, and another one only where rows are missing, or where those of the finer level fit.
-PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double points) noexcept {
+PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double growth, double points) noexcept {
   if (!limits_.has_areas && left_out_[tool] > 0) return 1.0;
   if (!limits_.has_areas) return used + skipped_[tool] <= share_[tool] ? -std::min(1.0, level_[tool]) : 0.0;
-  const bool is_full = left_out_[tool] > 0 || used > most_rows * share_[tool];
+  const double expected = growth * used;
+  const bool is_full = left_out_[tool] > 0 || expected > most_rows * share_[tool];
   const double size = points * std::exp2(level_[tool]), rows = used * std::exp2(std::floor(level_[tool]));
   const bool has_many = used > rows_per_point * limits_.wanted && level_[tool] < most_[tool];
   goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full || has_many, rows));
   const double change = goal_[tool] - level_[tool];
-  if (left_out_[tool] > 0) return std::max(1.0, change);
+  if (left_out_[tool] > 0 || expected > share_[tool]) return std::max(1.0, change);
   const bool is_urgent = used > many_rows * share_[tool] || level_[tool] < with_room_[tool];
   return std::clamp(change, -longest_step, is_urgent ? full_step : longest_step);
 }
@@ -155,9 +156,15 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double point
 PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& used,
                                           const std::array<double, maximum_tools>& points,
                                           const std::array<int, maximum_tools>& grasped) noexcept {
+  // In a fast press: up to twice as many rows in the next tick as in this one. When points fade in it does not go on.
+  constexpr double fastest = 2.0;
+  std::array<double, maximum_tools> growth{};
   had_ = share_;
-  used_ = level_;
-  for (std::size_t t = 0; t < maximum_tools; ++t) needed_[t] = used[t] + left_out_[t] + grasped[t];
+  for (std::size_t t = 0; t < maximum_tools; ++t) {
+    const int needs = used[t] + left_out_[t] + grasped[t], before = std::max(1, std::exchange(needed_[t], needs));
+    const bool has_same_points = std::floor(std::exchange(used_[t], level_[t])) == std::floor(level_[t]);
+    growth[t] = has_same_points ? std::clamp(static_cast<double>(needs) / before, 1.0, fastest) : 1.0;
+  }
   divide();
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     if (!(radius_[t] > 0.0) || used[t] == 0) {
@@ -165,7 +172,7 @@ PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& 
       overflow_[t] = {};
       continue;
     }
-    level_[t] += step(t, used[t], points[t]);
+    level_[t] += step(t, used[t], growth[t], points[t]);
   }
 }
 
