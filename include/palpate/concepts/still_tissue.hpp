@@ -11,7 +11,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct StillTissue {
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook begin_tick() noexcept { return {}; }
-  NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
+  NoHook end_tick(std::span<const VertexForce>, std::span<const PointForce>) noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   NoHook prepare_tools(const ToolRadii&, const ContactParameters&) noexcept { return {}; }

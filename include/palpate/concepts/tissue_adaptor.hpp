@@ -36,7 +36,9 @@ class TissueAdaptor {
 
   auto prefetch(std::span<const int> vertices) noexcept { return tissue_->prefetch(vertices); }
   auto begin_tick() noexcept { return tissue_->begin_tick(); }
-  auto end_tick(std::span<const VertexForce> forces) noexcept { return tissue_->end_tick(forces); }
+  auto end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept {
+    return tissue_->end_tick(forces, points);
+  }
   auto updates() const noexcept { return tissue().updates(); }
   auto exchange_contacts(ContactProblem& problem) noexcept { return tissue_->exchange_contacts(problem); }
   auto prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {

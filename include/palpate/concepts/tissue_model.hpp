@@ -60,8 +60,9 @@ concept HasBeginTick = requires(T& tissue) {
   { tissue.begin_tick() } noexcept -> HookResult<Status>;
 };
 template <class T>
-concept HasEndTick = requires(T& tissue, std::span<const VertexForce> forces) {
-  { tissue.end_tick(forces) } noexcept -> HookResult<void>;
+concept HasEndTick = requires(T& tissue, std::span<const VertexForce> forces,
+                              std::span<const PointForce> points) {
+  { tissue.end_tick(forces, points) } noexcept -> HookResult<void>;
 };
 template <class T>
 concept HasUpdates = requires(const T& constant) {
@@ -152,7 +153,8 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// - `prefetch(vertices)` -> void: the vertices that a tool may press soon.
 /// - `begin_tick()` -> Status: before each tick; may apply motion since the last tick. The status is part of the
 /// tick's.
-/// - `end_tick(forces)` -> void: the forces on the vertices after a tick; empty when a session is reset.
+/// - `end_tick(forces, points)` -> void: the forces on the vertices after a tick, and those on the contact points that
+/// they are the sums of; empty when a session is reset.
 /// - `updates()` const -> std::uint64_t: number of updates applied by `begin_tick`. A servo fades its force if this
 /// number does not change for too long.
 /// - `exchange_contacts(problem)` -> void: after `begin_tick`, for a tissue whose triangles change: moves the session's
@@ -161,8 +163,9 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// it.
 /// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
 /// pending. Only such a tissue accepts a BladeTool.
-/// - `vertex_rotation(v)` const -> Matrix3: how the surface at vertex v is rotated relative to the positions of its
-/// SubfacetCompliance.
+/// - `vertex_rotation(v)` const -> Matrix3: M_v, with which the displacement of the half-space below the surface
+/// (SubfacetCompliance) is M_v G M_w^T f: how the surface at vertex v is rotated, and, where stretch makes it stiffer,
+/// that rotation times the root of what is left.
 /// - `background_work()` -> BackgroundStep: work in a background thread, called by a BackgroundWorker: time steps,
 /// cuts. May throw: the worker then stops.
 /// - `report_slow(slow)` -> void: reports whether a BackgroundWorker cannot keep up.

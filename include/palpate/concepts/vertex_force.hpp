@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A vector in the axes of a model, which are those of its mesh before any pose. Sessions and snapshots use the
@@ -44,6 +46,13 @@ class ModelVector {
 /// A force on one vertex of the touchable surface, as models take it.
 struct VertexForce {
   int vertex = -1;
+  ModelVector force{};  ///< on the tissue [N]
+};
+
+/// A force on one point of the touchable surface. The vertices of its facet share it by the weights, which add up to 1.
+struct PointForce {
+  std::array<int, 3> vertices{-1, -1, -1};
+  std::array<double, 3> weights{};
   ModelVector force{};  ///< on the tissue [N]
 };
 

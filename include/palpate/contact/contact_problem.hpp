@@ -52,6 +52,8 @@ class ContactProblem {
   std::span<const Contact> contacts() const noexcept { return rows_.contacts(); }
   /// The forces of the last tick on the vertices.
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
+  /// The same on the contact points. O(contacts).
+  std::span<const PointForce> point_forces() noexcept;
   /// Whether a contact point is near a tool's sphere.
   bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
   /// The closest point of the touchable surface as the forces of the last tick deform it. `distance` [m] is that of the
@@ -157,6 +159,7 @@ class ContactProblem {
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started
   Candidates candidates_;
   ContactRows rows_;
+  std::vector<PointForce> on_points_;
   std::vector<Candidate*> pressing_;  // those of the last linearisation
   std::vector<Violated> violated_;
   ProxyMotion proxies_;

@@ -23,7 +23,16 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
       pressing_(at(parameters_.capacity)),
       violated_(at(candidates_.maximum())),
       on_body_(surface.body_count() > 1 ? at(parameters_.capacity) : 0) {
+  on_points_.reserve(at(parameters_.capacity));
   require_dense_points(surface, radii.smallest);
+}
+
+PALPATE_INLINE std::span<const PointForce> ContactProblem::point_forces() noexcept {
+  on_points_.clear();
+  for (const Contact& c : rows_.contacts())
+    if (const Vector3 total = c.total(); total.squaredNorm() > 0.0)
+      on_points_.push_back({c.vertices, c.weights, ModelVector(-total)});
+  return on_points_;
 }
 
 PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters& p) {

@@ -12,11 +12,12 @@ namespace detail {
 
 /// Whether all hooks except prefetch do nothing.
 template <class T>
-concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, ContactProblem& problem,
+concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces,
+                                     std::span<const PointForce> points, ContactProblem& problem,
                                      const ToolRadii& radii, const ContactParameters& parameters,
                                      const BladeSweep& sweep) {
   { tissue.begin_tick() } -> std::same_as<NoHook>;
-  { tissue.end_tick(forces) } -> std::same_as<NoHook>;
+  { tissue.end_tick(forces, points) } -> std::same_as<NoHook>;
   { tissue.updates() } -> std::same_as<NoHook>;
   { tissue.exchange_contacts(problem) } -> std::same_as<NoHook>;
   { tissue.prepare_tools(radii, parameters) } -> std::same_as<NoHook>;

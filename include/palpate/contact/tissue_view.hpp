@@ -28,7 +28,7 @@ struct TissueFunctions {
   double (*compliance_floor)(const void*) noexcept;
   void (*prefetch)(void*, std::span<const int>) noexcept;
   Status (*begin_tick)(void*) noexcept;
-  void (*end_tick)(void*, std::span<const VertexForce>) noexcept;
+  void (*end_tick)(void*, std::span<const VertexForce>, std::span<const PointForce>) noexcept;
   std::uint64_t (*updates)(const void*) noexcept;
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
   void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
@@ -118,8 +118,10 @@ struct TissueCalls {
     if constexpr (calls<decltype(hooked().prefetch(std::span<const int>{}))>)
       f.prefetch = [](void* t, std::span<const int> v) noexcept { of(t).prefetch(v); };
     if constexpr (AnnouncesChanges<T>) f.begin_tick = [](void* t) noexcept -> Status { return of(t).begin_tick(); };
-    if constexpr (calls<decltype(hooked().end_tick(std::span<const VertexForce>{}))>)
-      f.end_tick = [](void* t, std::span<const VertexForce> v) noexcept { of(t).end_tick(v); };
+    if constexpr (calls<decltype(hooked().end_tick(std::span<const VertexForce>{}, std::span<const PointForce>{}))>)
+      f.end_tick = [](void* t, std::span<const VertexForce> v, std::span<const PointForce> p) noexcept {
+        of(t).end_tick(v, p);
+      };
     if constexpr (calls<decltype(hooked().updates())>)
       f.updates = [](const void* t) noexcept -> std::uint64_t { return of(t).updates(); };
     if constexpr (calls<decltype(hooked().exchange_contacts(std::declval<ContactProblem&>()))>)
@@ -197,8 +199,8 @@ class TissueView {
     look();
     return status;
   }
-  void end_tick(std::span<const VertexForce> forces) const noexcept {
-    if (functions_->end_tick != nullptr) functions_->end_tick(tissue_, forces);
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points) const noexcept {
+    if (functions_->end_tick != nullptr) functions_->end_tick(tissue_, forces, points);
   }
   bool has_updates() const noexcept { return functions_->updates != nullptr; }
   std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }

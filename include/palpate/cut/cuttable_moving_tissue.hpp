@@ -149,6 +149,7 @@ class CuttableMovingTissue : public MovingTissue {
                                                                   limits());
     cut_motion_ = motion.get();
     PreparedMotion prepared;
+    prepared.large_strain = true;
     prepared.start = motion->displacement();
     prepared.motion = std::move(motion);
     set_up(touchable, std::move(prepared), parameters.step, pattern);

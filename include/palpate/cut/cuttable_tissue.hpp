@@ -185,7 +185,7 @@ class CuttableTissue : public ModelBase {
   double compliance_bound(int j) const noexcept { return view().bound[static_cast<std::size_t>(j)]; }
   double compliance_floor() const noexcept { return view().floor; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
-  NoHook end_tick(std::span<const VertexForce>) noexcept { return {}; }
+  NoHook end_tick(std::span<const VertexForce>, std::span<const PointForce>) noexcept { return {}; }
   NoHook vertex_rotation(int) const noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }

@@ -61,7 +61,7 @@ class HapticServo {
   void reset() noexcept;
   /// Reports to the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the
   /// tick's own thread.
-  void release() noexcept { tissue_.end_tick({}); }
+  void release() noexcept { tissue_.end_tick({}, {}); }
 
   /// Largest number of contacts of all tools, from ServoOptions::contact. Of more, evenly spread ones are kept
   /// (degraded_model).

@@ -127,7 +127,7 @@ PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const Too
   if (place_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
   for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
-  tissue_.end_tick(problem_.vertex_forces());
+  tissue_.end_tick(problem_.vertex_forces(), problem_.point_forces());
   publish();
   return forces_;
 }
@@ -143,7 +143,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   for (ForceGate& gate : gates_) gate.reset();
   std::fill(errors_.begin(), errors_.end(), ForceError{});
   std::fill(lost_contact_.begin(), lost_contact_.end(), false);
-  tissue_.end_tick({});
+  tissue_.end_tick({}, {});
   for (EnergyTank& energy : energies_) energy.reset();
   publish();
 }

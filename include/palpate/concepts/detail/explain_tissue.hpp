@@ -27,7 +27,7 @@ constexpr void explain_tissue() noexcept {
                          "does not move, from StillTissue")
     PALPATE_HOOK(HasPrefetch, "prefetch(span<const int>) noexcept -> void or NoHook");
     PALPATE_HOOK(HasBeginTick, "begin_tick() noexcept -> Status or NoHook");
-    PALPATE_HOOK(HasEndTick, "end_tick(span<const VertexForce>) noexcept -> void or NoHook");
+    PALPATE_HOOK(HasEndTick, "end_tick(span<const VertexForce>, span<const PointForce>) noexcept -> void or NoHook");
     PALPATE_HOOK(HasUpdates, "updates() const noexcept -> uint64_t or NoHook");
     PALPATE_HOOK(HasExchangeContacts, "exchange_contacts(ContactProblem&) noexcept -> void or NoHook");
     PALPATE_HOOK(HasPrepareTools, "prepare_tools(const ToolRadii&, const ContactParameters&) -> void or NoHook");

@@ -93,6 +93,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   }
   /// Right after a cut there is no step to correct; without inertia the next one forgets it.
   bool correct(const VectorX& more) noexcept override { return was_cut_ ? is_static() : motion_->correct(more); }
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override { return motion_->set_springs(springs); }
   bool prepare_response(double h) noexcept override { return motion_->prepare_response(h); }
   bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_->respond(forces, u); }
   bool respond_here(const VectorX& forces, VectorX& u) noexcept override { return motion_->respond_here(forces, u); }

@@ -8,9 +8,11 @@
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/triple_buffer.hpp>
 #include <palpate/model/model_base.hpp>
+#include <palpate/model/moving/detail/contact_springs.hpp>
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/split_vertices.hpp>
+#include <palpate/model/moving/detail/surface_stretch.hpp>
 #include <palpate/model/moving/detail/vertex_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
@@ -33,7 +35,8 @@ struct BlockPattern;
 /// After every step the tissue publishes the position of its surface without the tool forces, and the rotation of each
 /// vertex. Between two steps the servo solves the contact on that surface with the compliance of one step from the
 /// settled state, rotated with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). The
-/// forces at the end of a step correct that step and load the next one. For a motion without inertia C is also
+/// forces at the end of a step correct that step and act in the next one: as springs between tools and contact points
+/// (ContactSprings), or as loads where the motion has no springs. For a motion without inertia C is also scaled and
 /// corrected by the last steps (SecantCompliance), so that it follows the state. In a steady contact the force is that
 /// of the non-linear equilibrium, for any step length and for an inexact C: C only predicts the change until the next
 /// step.
@@ -46,6 +49,8 @@ class MovingTissue : public ModelBase {
  public:
   /// Maximum number of vertex forces, three per contact; forces beyond it are not applied.
   static constexpr std::size_t most_forces = 3 * largest_default_capacity;
+  /// Maximum number of contact points.
+  static constexpr std::size_t most_points = largest_default_capacity;
   /// Maximum number of vertices around the tools, and of those that press, whose compliance is evaluated by the thread
   /// that steps. Ticks evaluate the others.
   static constexpr std::size_t most_near = 512, most_pressed = 192;
@@ -104,8 +109,8 @@ class MovingTissue : public ModelBase {
   /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up, stalled_tissue when it
   /// has failed; large_displacement when linear surroundings are displaced too far.
   Status begin_tick() noexcept;
-  /// Forces that are not finite are ignored.
-  void end_tick(std::span<const VertexForce> forces) noexcept;
+  /// Forces that are not finite are ignored. Forces without points are dead loads of the steps.
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept;
   const ContactSurface& contact_surface() const noexcept { return views_.front().surface; }
   /// The next surface comes with the compliance of these vertices, for those whose displacement is requested until
   /// then.
@@ -125,7 +130,7 @@ class MovingTissue : public ModelBase {
     return views_.front().compliance.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
   }
   double compliance_floor() const noexcept { return views_.front().compliance.floor(); }
-  Matrix3 vertex_rotation(int v) const noexcept { return views_.front().rotation[static_cast<std::size_t>(v)]; }
+  Matrix3 vertex_rotation(int v) const noexcept { return views_.front().half_space[static_cast<std::size_t>(v)]; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   /// Takes the newest surface, and updates the description of loads that error messages contain; not while a session
@@ -184,16 +189,20 @@ class MovingTissue : public ModelBase {
     std::size_t count = 0;
     std::span<const int> all() const noexcept { return {item.data(), count}; }
   };
+  struct View;
   struct Forces {
     std::array<VertexForce, most_forces> item{};
     std::size_t count = 0;
+    std::array<PointForce, most_points> point{};
+    std::size_t points = 0;
+    const View* view = nullptr;        // of the tick; the thread that steps may read it until it publishes the next
     VertexList<most_pressed> pressed;  // of the rows since the last surface, also of those without force
     VertexList<most_near> near;        // whose displacement was requested
     std::uint64_t number = 0;          // of the surface of the tick
   };
   struct View {
-    std::vector<Vector3> free, pressed;  // positions without and with the forces used_
-    std::vector<Matrix3> rotation;
+    std::vector<Vector3> free, pressed;         // positions without and with the forces used_
+    std::vector<Matrix3> rotation, half_space;  // how it turns and stretches the surface: SurfaceStretch
     SecantTerms secants;
     NearCompliance near;
     ContactSurface surface;
@@ -214,7 +223,11 @@ class MovingTissue : public ModelBase {
   void add(const Forces& forces, double factor, VectorX& load) const noexcept;
   /// Position of the surface without the current tool forces, computed with the compliance of the servo, so that the
   /// same forces restore the current position.
-  void update_view(View& view) const noexcept;
+  void update_view(View& view) noexcept;
+  /// Scales the compliance by what the last step has found.
+  void follow_stiffness(const std::vector<Matrix3>& rotation) noexcept;
+  /// Sets springs for forces of a tick, or none.
+  void set_springs(const Forces& forces) noexcept;
   /// Compliance of two vertices, rotated and corrected by the last steps [m/N].
   Matrix3 evaluate(const View& view, int i, int j) const noexcept;
   /// Appends a vertex unless it was listed in the same `round`, or there is no room.
@@ -256,6 +269,10 @@ class MovingTissue : public ModelBase {
   bool was_slit_ = false;                      // since the last step
   detail::SplitVertices split_;                // of the last change of the surface
   Forces used_;
+  ContactSprings springs_;  // of the forces used_; without them these are loads
+  bool has_springs_ = false;
+  SurfaceStretch stretch_;
+  bool stretches_ = false;
   std::uint64_t steps_ = 0;
   std::mutex changes_;
   std::atomic<bool> slow_{false}, failed_work_{false};

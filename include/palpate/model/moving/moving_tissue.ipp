@@ -44,6 +44,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   step_ = step;
   motion_ = std::move(prepared.motion);
   accepts_initial_strains_ = prepared.accepts_initial_strains;
+  stretches_ = prepared.large_strain;
   start_ = std::move(prepared.start);
   const EssentialConditions conditions = elastic_body().conditions(scene());
   start_prescribed_ = conditions.prescribed;
@@ -64,6 +65,9 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   limits().require_memory(near_bytes, "the compliance near the contacts");
   triangles_ = touchable.triangles;
   if (motion_->is_quasi_static()) start_secants();
+  has_springs_ = motion_->set_springs({});
+  springs_ = ContactSprings(nodes_.size(), most_forces, most_points);
+  if (stretches_) stretch_ = SurfaceStretch(rest_, triangles_);
   View view = make_view();
   view.near = {nodes_.size(), most_near, most_pressed};
   update_view(view);
@@ -100,6 +104,7 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
   view.free.resize(vertices);
   view.pressed.resize(vertices);
   view.rotation.resize(vertices);
+  view.half_space.resize(vertices);
   if (motion_->is_quasi_static())
     for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
   view.compliance = compliance_;
@@ -115,19 +120,24 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   if (!prepare_step()) return {};
   take_forces();
   full_.setZero();
-  add(pressing_.front(), 1.0, full_);
-  add(used_, -1.0, full_);
-  const bool corrected = full_.isZero(0.0) || motion_->correct(full_) || steps_ == 0;
+  const bool had_springs = !springs_.empty();
+  if (!had_springs) add(used_, -1.0, full_);
+  set_springs(pressing_.front());
+  if (springs_.empty()) add(pressing_.front(), 1.0, full_);
+  const bool same = !had_springs && springs_.empty() && full_.isZero(0.0);
+  const bool corrected = same || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
   used_ = pressing_.front();
+  if (!motion_->is_static()) springs_.read(motion_->displacement(), {used_.item.data(), used_.count});
   // With a history, the correction changes the displacement by the change of forces alone; a step also by creep.
   if (motion_->is_quasi_static() && !motion_->is_static() && corrected) record_pair(before, 0.0);
   if (used_.number != changed_.number) used_.count = split_.divide(used_.item, used_.count);
   const bool was_slit = std::exchange(was_slit_, false);
   full_ = load_;
-  add(used_, 1.0, full_);
+  if (springs_.empty()) add(used_, 1.0, full_);
   motion_->set_load(full_);
   const MotionStep done = motion_->step(step_);
+  springs_.read(motion_->displacement(), {used_.item.data(), used_.count});
   if (motion_->is_quasi_static()) {
     if (loads_changed_)
       secants_.clear();
@@ -152,6 +162,20 @@ PALPATE_INLINE void MovingTissue::take_forces() noexcept {
   detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
   detail::drop_items(given.pressed.item, given.pressed.count, is_gone);
   detail::drop_items(given.near.item, given.near.count, is_gone);
+}
+
+/// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
+PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
+  springs_.clear();
+  if (!has_springs_) return;
+  if (forces.points > 0 && forces.number == changed_.number) {
+    const View& view = *forces.view;
+    springs_.set(
+        {forces.item.data(), forces.count}, {forces.point.data(), forces.points}, nodes_,
+        [&](int v) { return Vector3(view.free[vertex(v)] - rest_[vertex(v)]); },
+        [&](int i, int j) { return evaluate(view, i, j); });
+  }
+  motion_->set_springs(springs_.all());
 }
 
 /// Records the change of displacement since `moved_` that the change of forces since `before` has caused.
@@ -245,6 +269,9 @@ PALPATE_INLINE void MovingTissue::restart() {
   pressing_.update();
   pressing_.front() = {};  // of a session before the reset
   used_ = {};
+  springs_.clear();
+  motion_->set_springs({});
+  compliance_.set_scale(1.0);
   ticked_ = {};
   near_.count = pressed_.count = 0;  // of ticks before the reset
   secants_.clear();
@@ -276,6 +303,8 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   nodes_ = std::move(surface.nodes);
   rest_.clear();
   for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
+  springs_.resize(nodes_.size());
+  if (stretches_) stretch_ = SurfaceStretch(rest_, surface.surface.triangles());
   list_every_vertex();
   if (motion_->is_quasi_static()) start_secants();
   const std::uint64_t number = changed_.number + 1;
@@ -345,7 +374,8 @@ PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
   return status;
 }
 
-PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) noexcept {
+PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces,
+                                           std::span<const PointForce> points) noexcept {
   Forces& out = pressing_.back();
   out.count = 0;
   ticked_ = {};
@@ -356,6 +386,13 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces) 
       out.item[out.count++] = f;
     else
       ticked_.set(StatusFlag::degraded_model);
+  out.points = 0;
+  const auto is_finite = [](const PointForce& p) { return all_finite(p.force.in_model_axes()); };
+  if (points.size() <= most_points && std::all_of(points.begin(), points.end(), is_finite))
+    for (const PointForce& p : points) out.point[out.points++] = p;
+  else
+    ticked_.set(points.size() > most_points ? StatusFlag::degraded_model : StatusFlag::non_finite_force);
+  out.view = &views_.front();
   out.number = views_.front().number;
   out.pressed = pressed_;
   out.near = near_;
@@ -388,10 +425,21 @@ PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const 
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = node_vector(motion_->displacement(), nodes_[i]);
 }
 
-PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
+/// Where a press makes the tissue stiffer, ticks with the compliance at rest are unstable: the tool slides off.
+PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& rotation) noexcept {
+  constexpr double least = 0.2, followed = 0.3;  // part of the difference, in a step
+  if (!secants_.has_pairs()) return;
+  const double before = compliance_.scale();
+  const double found = std::clamp(before * secants_.work_ratio(compliance_, rotation), least, 1.0);
+  compliance_.set_scale(before + followed * (found - before));
+}
+
+PALPATE_INLINE void MovingTissue::update_view(View& view) noexcept {
   const VectorX& u = motion_->displacement();
   const std::size_t n = nodes_.size();
   for (std::size_t i = 0; i < n; ++i) view.rotation[i] = rotations_(i, u);
+  follow_stiffness(view.rotation);
+  view.compliance.set_scale(compliance_.scale());
   secants_.find_terms(compliance_, view.rotation, view.secants);
   std::array<Vector3, most_forces> unrotated;
   for (std::size_t k = 0; k < used_.count; ++k)
@@ -405,6 +453,10 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) const noexcept {
     view.pressed[i] = rest_[i] + node_vector(u, nodes_[i]);
     view.free[i] = view.pressed[i] - moved;
   }
+  if (stretches_)
+    stretch_.find(view.pressed, view.rotation, view.half_space);
+  else
+    view.half_space = view.rotation;
   view.near.set(near_vertices(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
 }
 

@@ -65,6 +65,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
         std::move(made), detail::make_energy_forces<S>(std::move(body), limits), std::move(factor), p);
     motion->begin();
     PreparedMotion prepared;
+    prepared.large_strain = true;
     prepared.start = motion->displacement();
     prepared.motion = std::move(motion);
     return prepared;

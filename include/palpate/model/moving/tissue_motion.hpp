@@ -6,8 +6,10 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/model/moving/contact_spring.hpp>
 
 #include <memory>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -36,6 +38,9 @@ class TissueMotion {
   /// Corrects the last step for `more` forces [N], at least to first order. Returns false and changes nothing when that
   /// is not possible.
   virtual bool correct(const VectorX& more) noexcept = 0;
+  /// Sets the springs that act besides the loads, from the next `correct` or `step` on; at most `most_springs`. Returns
+  /// false, without a change, when the motion knows loads only. No allocation.
+  virtual bool set_springs(std::span<const ContactSpring>) noexcept { return false; }
   /// Prepares `respond` for steps of h [s] from the current state. Returns false on failure. For set-up.
   virtual bool prepare_response(double h) noexcept = 0;
   /// Displacement u [m] that `forces` [N] add at the end of a step, to first order. Returns false when it was not
@@ -70,6 +75,7 @@ class TissueMotion {
 struct PreparedMotion {
   std::unique_ptr<TissueMotion> motion;
   VectorX start;                         ///< displacement at rest [m]
+  bool large_strain = false;             ///< whether the material is stretched, not only rotated
   bool accepts_initial_strains = false;  ///< whether loads of initial strains may be set
 };
 

@@ -83,8 +83,8 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
 
   // TissueModel
   TissueClaim& claim() noexcept { return stiffened_.claim(); }
-  void end_tick(std::span<const VertexForce> forces) noexcept {
-    stiffened_.end_tick(forces);
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept {
+    stiffened_.end_tick(forces, points);
     note_scale();
   }
   Matrix3 compliance(int i, int j) const noexcept { return stiffened_.compliance(i, j); }

@@ -30,6 +30,7 @@ class PartlyLinearMotion final : public TissueMotion {
   MotionStep step(double h) noexcept override;
   /// Nothing to do: the next step forgets this one.
   bool correct(const VectorX&) noexcept override { return stepped_; }
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override;
   bool prepare_response(double h) noexcept override { return near_->prepare_response(h); }
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   bool is_static() const noexcept override { return near_->is_static(); }
@@ -56,6 +57,7 @@ class PartlyLinearMotion final : public TissueMotion {
   VectorX u_, v_, load_;  // of all nodes
   VectorX near_vector_, far_vector_;
   VectorX kept_moved_, extended_;  // for `complete`
+  std::vector<ContactSpring> springs_;   // by nodes of the near part
   bool stepped_ = false, far_changed_ = true;
 };
 

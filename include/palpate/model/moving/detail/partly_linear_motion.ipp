@@ -29,6 +29,7 @@ PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::uniq
     kept_in_body_.push_back(3 * Index{parts_.near.nodes[static_cast<std::size_t>(dof / 3)]} + dof % 3);
   set_load(load);
   far_displacement_.set_from_load(surroundings_->from_load().displacement);
+  springs_.reserve(most_springs);
   take_displacement();
 }
 
@@ -41,6 +42,14 @@ PALPATE_INLINE MotionStep PartlyLinearMotion::step(double h) noexcept {
   take_displacement();
   if (far_displacement_.is_too_large(u_)) done.status.set(StatusFlag::large_displacement);
   return done;
+}
+
+PALPATE_INLINE bool PartlyLinearMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
+  springs_.assign(springs.begin(), springs.begin() + count);
+  for (ContactSpring& s : springs_)
+    for (NodeId& node : s.nodes) node = parts_.near.local(node);
+  return near_->set_springs(springs_);
 }
 
 PALPATE_INLINE void PartlyLinearMotion::take_displacement() noexcept {
@@ -146,6 +155,7 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
       std::move(factor), parameters);
   motion->begin();
   PreparedMotion prepared;
+  prepared.large_strain = true;
   prepared.motion = std::make_unique<PartlyLinearMotion>(std::move(parts), std::move(motion), std::move(surroundings),
                                                          whole.load, whole.positions);
   prepared.start = prepared.motion->displacement();

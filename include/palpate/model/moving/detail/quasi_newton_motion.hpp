@@ -60,6 +60,7 @@ class QuasiNewtonMotion final : public TissueMotion {
 
   MotionStep step(double h) noexcept override;
   bool correct(const VectorX& more) noexcept override;
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override;
   bool prepare_response(double h) noexcept override;
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   bool is_static() const noexcept override { return !parameters_.inertia && !forces_->has_history(); }
@@ -136,6 +137,8 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Iterations of a shortened step.
   static constexpr int most_shortened = 6;
   void accept() noexcept;
+  /// Adds the forces of the springs at trial_ to full_. Returns their energy.
+  double add_springs() noexcept;
 
   QuasiNewtonParameters parameters_;
   DeformableBody body_;
@@ -156,6 +159,7 @@ class QuasiNewtonMotion final : public TissueMotion {
     DeformationReport deformation;
     bool valid = false;
   } known_;
+  std::vector<ContactSpring> springs_;
   QuasiNewtonReport report_;
   VectorX prescribed_;  // at the end of the present step, or of a part of it
   double stored_ = 0.0, scale_ = 0.0, potential_scale_ = 0.0;

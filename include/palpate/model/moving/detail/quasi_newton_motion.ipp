@@ -66,6 +66,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
       prescribed_(body_.conditions.prescribed) {
   parameters.require_usable();
   require_mass(body_);
+  springs_.reserve(most_springs);
   for (Index dof = 0; dof < inertia_.size(); ++dof) inertia_[dof] = body_.lumped[dof / 3];
   if (rounding_errors != nullptr) {
     floor_ = *rounding_errors;
@@ -375,6 +376,7 @@ PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
   double moving = 0.0;
   full_ = load_ - force_;
   scale_ = std::max(force_.norm(), load_.norm());
+  const double pushed = add_springs();
   if (length_ < infinity) {
     step_.find_motion(trial_, velocity_, acceleration_);
     inertial_ = inertia_.cwiseProduct(acceleration_);
@@ -385,8 +387,24 @@ PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
   }
   body_.conditions.gather(full_, residual);
   const double work = load_.dot(trial_);
-  potential_scale_ = std::abs(stored_) + std::abs(work) + moving;
-  return moving + stored_ - work;
+  potential_scale_ = std::abs(stored_) + std::abs(work) + moving + pushed;
+  return moving + stored_ + pushed - work;
+}
+
+PALPATE_INLINE double QuasiNewtonMotion::add_springs() noexcept {
+  double energy = 0.0;
+  for (const ContactSpring& s : springs_) {
+    const double push = s.push(trial_);
+    for (std::size_t a = 0; a < 3; ++a) add_node_vector(full_, Index{s.nodes[a]}, s.weights[a] * push * s.direction);
+    energy += 0.5 * push * push / s.stiffness;
+  }
+  return energy;
+}
+
+PALPATE_INLINE bool QuasiNewtonMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
+  springs_.assign(springs.begin(), springs.begin() + count);
+  return true;
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::start_at_state() noexcept {

@@ -56,6 +56,7 @@ class SecantCompliance {
   /// For that many vertices, and at most that many forces at a time.
   SecantCompliance(std::size_t vertices, std::size_t most_forces);
 
+  bool has_pairs() const noexcept { return count_ > 0; }
   /// Forgets all pairs.
   void clear() noexcept { count_ = 0; }
   /// Records that `before`, `after` [N] caused displacements `from`, `to` of the vertices [m], unless the forces hardly
@@ -63,6 +64,8 @@ class SecantCompliance {
   /// compliance.
   void record(std::span<const VertexForce> before, std::span<const VertexForce> after, std::span<const Vector3> from,
               std::span<const Vector3> to, double error) noexcept;
+  /// Work of the last pair relative to that which a compliance, rotated with the vertices, gives.
+  double work_ratio(const VertexCompliance& compliance, const std::vector<Matrix3>& rotation) const noexcept;
   /// The corrections of a compliance for vertices rotated by `rotation`.
   void find_terms(const VertexCompliance& compliance, const std::vector<Matrix3>& rotation,
                   SecantTerms& terms) const noexcept;

@@ -53,6 +53,20 @@ PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before
   if (!(change > least * least * size) || !(product > 0.0)) --count_;
 }
 
+PALPATE_INLINE double SecantCompliance::work_ratio(const VertexCompliance& compliance,
+                                                   const std::vector<Matrix3>& rotation) const noexcept {
+  if (count_ == 0) return 1.0;
+  const Pair& pair = pair_[count_ - 1];
+  double product = 0.0, own = 0.0;
+  for (const VertexForce& f : pair.force) {
+    const Vector3& y = f.force.in_model_axes();
+    product += y.dot(pair.moved[static_cast<std::size_t>(f.vertex)]);
+    for (const VertexForce& g : pair.force)
+      own += y.dot(compliance.rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
+  }
+  return own > 0.0 ? product / own : 1.0;
+}
+
 PALPATE_INLINE void SecantCompliance::find_terms(const VertexCompliance& compliance,
                                                  const std::vector<Matrix3>& rotation,
                                                  SecantTerms& terms) const noexcept {

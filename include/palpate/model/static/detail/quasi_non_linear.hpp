@@ -63,9 +63,9 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
 
   TissueClaim& claim() noexcept { return claim_; }
-  void end_tick(std::span<const VertexForce> forces) noexcept {
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept {
     follow(forces);
-    this->tissue().end_tick(forces);
+    this->tissue().end_tick(forces, points);
   }
   Matrix3 compliance(int i, int j) const noexcept {
     const Matrix3 c = this->tissue().compliance(i, j);

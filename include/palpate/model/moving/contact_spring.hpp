@@ -1,0 +1,31 @@
+// A contact as a step of a motion sees it.
+#pragma once
+
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Maximum number of springs of a motion.
+inline constexpr std::size_t most_springs = 512;
+
+/// A spring that pushes a point of the surface along a direction and never pulls it.
+struct ContactSpring {
+  std::array<NodeId, 3> nodes{};     ///< of the point's facet
+  std::array<double, 3> weights{};   ///< of the point
+  Vector3 direction{0.0, 0.0, 1.0};  ///< of the push, unit
+  double reach = 0.0;                ///< displacement along `direction` from which on there is no force [m]
+  double stiffness = 1.0;            ///< [N/m]
+
+  /// Force along `direction` at displacements u, 3 per node [N].
+  double push(const VectorX& u) const noexcept {
+    double moved = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) moved += weights[a] * direction.dot(node_vector(u, Index{nodes[a]}));
+    return stiffness * std::max(0.0, reach - moved);
+  }
+};
+
+}}  // namespace palpate

@@ -1,0 +1,87 @@
+// The contacts of a tick as springs for the steps of a tissue.
+#pragma once
+
+#include <palpate/concepts/vertex_force.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/model/moving/contact_spring.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Springs between the tools, where a tick has left them, and the points that they press. A spring has the force of the
+/// tick where the point is displaced as in the tick, and follows the point's displacement from there. A step with them
+/// ends near the equilibrium of the contact. With dead loads it would end in an equilibrium of the loads: beyond about
+/// half a radius that is another one, or unstable. When ticks and steps agree, forces and displacements do not depend
+/// on the stiffness of the springs (a Robin condition between the parts of a partitioned problem; Badia, Nobile and
+/// Vergara 2008). Only the constructor and `resize` allocate.
+class ContactSprings {
+ public:
+  ContactSprings() = default;
+  /// For a surface of `vertices`, and at most that many forces on vertices and points.
+  ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points);
+
+  /// For a surface of another number of vertices. Clears.
+  void resize(std::size_t vertices);
+  void clear() noexcept { springs_.clear(); }
+  bool empty() const noexcept { return springs_.empty(); }
+  std::span<const ContactSpring> all() const noexcept { return springs_; }
+
+  /// Sets springs for the points' forces, whose sums at the vertices are `forces`, one per vertex. `moved(v)` is the
+  /// displacement of a vertex without forces, `compliance(i, j)` that per force, `nodes` those of the vertices. Without
+  /// springs where the sums do not fit. O(forces^2).
+  template <class Moved, class Compliance>
+  void set(std::span<const VertexForce> forces, std::span<const PointForce> points, const std::vector<NodeId>& nodes,
+           const Moved& moved, const Compliance& compliance) noexcept {
+    clear();
+    if (!enter(forces, points)) return;
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      moved_[k] = moved(forces[k].vertex);
+      yield_[k].setZero();
+      for (std::size_t l = 0; l < forces.size(); ++l) {
+        const Matrix3 c = compliance(forces[k].vertex, forces[l].vertex);
+        moved_[k] += c * forces[l].force.in_model_axes();
+        yield_[k] += c * unit_[l];
+      }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!(points[i].force.in_model_axes().squaredNorm() > 0.0)) continue;
+      double own = 0.0;
+      const Vector3 direction = points[i].force.in_model_axes().normalized();
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          if (const double weight = points[i].weights[a] * points[i].weights[b]; weight > 0.0)
+            own += weight * direction.dot(compliance(points[i].vertices[a], points[i].vertices[b]) * direction);
+      add(points[i], direction, own, nodes);
+    }
+  }
+  /// Sets the forces that `set` was given to those of the springs at displacements u of all nodes.
+  void read(const VectorX& u, std::span<VertexForce> forces) const noexcept;
+
+ private:
+  /// Stiffness of all springs together, relative to that of the tissue under them. Softer ones do not hold a state that
+  /// is unstable under dead loads; stiffer ones take more iterations of a step.
+  static constexpr double stiffer = 3.0;
+
+  /// Numbers the vertices with forces and adds up the directions of their points' forces. False where a point has none.
+  bool enter(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept;
+  void add(const PointForce& point, const Vector3& direction, double own, const std::vector<NodeId>& nodes) noexcept;
+  std::size_t slot(int vertex) const noexcept {
+    return static_cast<std::size_t>(slot_[static_cast<std::size_t>(vertex)]);
+  }
+
+  std::vector<ContactSpring> springs_;
+  std::vector<std::array<int, 3>> forces_of_;  // per spring: the forces on its vertices
+  std::vector<int> slot_;                      // per vertex: number of its force
+  std::vector<Vector3> moved_, unit_,
+      yield_;  // per force: displacement of its vertex, sum of directions, displacement by them
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/detail/contact_springs.ipp>
+#endif

@@ -1,0 +1,74 @@
+// Definitions of contact_springs.hpp.
+#pragma once
+
+#include <palpate/model/moving/detail/contact_springs.hpp>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE ContactSprings::ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points)
+    : slot_(vertices, -1), moved_(most_forces), unit_(most_forces), yield_(most_forces) {
+  springs_.reserve(most_points);
+  forces_of_.reserve(most_points);
+}
+
+PALPATE_INLINE void ContactSprings::resize(std::size_t vertices) {
+  clear();
+  slot_.assign(vertices, -1);
+}
+
+PALPATE_INLINE bool ContactSprings::enter(std::span<const VertexForce> forces,
+                                          std::span<const PointForce> points) noexcept {
+  forces_of_.clear();
+  if (forces.size() > moved_.size() || points.size() > springs_.capacity()) return false;
+  std::fill(slot_.begin(), slot_.end(), -1);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    slot_[static_cast<std::size_t>(forces[k].vertex)] = static_cast<int>(k);
+    unit_[k].setZero();
+  }
+  for (const PointForce& p : points) {
+    const Vector3& force = p.force.in_model_axes();
+    const double size = force.norm();
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p.weights[a] == 0.0 || size == 0.0) continue;
+      if (slot_[static_cast<std::size_t>(p.vertices[a])] < 0) return false;
+      unit_[slot(p.vertices[a])] += p.weights[a] / size * force;
+    }
+  }
+  return true;
+}
+
+PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& direction, double own,
+                                        const std::vector<NodeId>& nodes) noexcept {
+  ContactSpring spring;
+  std::array<int, 3> of{-1, -1, -1};
+  double moved = 0.0, together = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    spring.nodes[a] = nodes[static_cast<std::size_t>(point.vertices[a])];
+    spring.weights[a] = point.weights[a];
+    if (point.weights[a] == 0.0) continue;
+    of[a] = static_cast<int>(slot(point.vertices[a]));
+    moved += point.weights[a] * direction.dot(moved_[slot(point.vertices[a])]);
+    together += point.weights[a] * direction.dot(yield_[slot(point.vertices[a])]);
+  }
+  const double compliance = std::max(own, together);
+  if (!(compliance > 0.0)) return;  // of prescribed vertices
+  spring.direction = direction;
+  spring.stiffness = stiffer / compliance;
+  spring.reach = moved + point.force.in_model_axes().norm() / spring.stiffness;
+  springs_.push_back(spring);
+  forces_of_.push_back(of);
+}
+
+PALPATE_INLINE void ContactSprings::read(const VectorX& u, std::span<VertexForce> forces) const noexcept {
+  if (springs_.empty()) return;
+  for (VertexForce& f : forces) f.force = {};
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const double push = springs_[i].push(u);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (forces_of_[i][a] >= 0)
+        forces[static_cast<std::size_t>(forces_of_[i][a])].force +=
+            ModelVector(springs_[i].weights[a] * push * springs_[i].direction);
+  }
+}
+
+}}  // namespace palpate
