@@ -17,7 +17,10 @@ struct Counting : test::AnalyticTissue {
     ++begun;
     return StatusFlag::slow_tissue;
   }
-  void end_tick(std::span<const VertexForce> forces) noexcept { pressing = forces.size(); }
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept {
+    pressing = forces.size();
+    pressing_points = points.size();
+  }
   std::uint64_t updates() const noexcept { return 7; }
   void exchange_contacts(ContactProblem&) noexcept { ++exchanged; }
   void prepare_tools(const ToolRadii& radii, const ContactParameters&) { smallest = radii.smallest; }
@@ -26,7 +29,7 @@ struct Counting : test::AnalyticTissue {
   void report_slow(bool is) noexcept { slow = is; }
   void report_failed(bool is) noexcept { failed = is; }
 
-  std::size_t prefetched = 0, pressing = 0;
+  std::size_t prefetched = 0, pressing = 0, pressing_points = 0;
   int begun = 0, exchanged = 0, cuts = 0;
   double smallest = 0.0;
   bool slow = false, failed = false;
@@ -100,8 +103,9 @@ TEST_CASE("an adaptor forwards every hook, also through another adaptor", "[cont
   CHECK(view.begin_tick(problem).has(StatusFlag::slow_tissue));
   CHECK(springs.begun == 1);
   CHECK(springs.exchanged == 1);
-  view.end_tick(std::array<VertexForce, 2>{});
+  view.end_tick(std::array<VertexForce, 2>{}, std::array<PointForce, 1>{});
   CHECK(springs.pressing == 2);
+  CHECK(springs.pressing_points == 1);
   CHECK(view.has_updates());
   CHECK(view.updates() == 7);
   view.prepare_tools(4e-3, {});

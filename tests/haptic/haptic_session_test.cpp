@@ -383,7 +383,9 @@ TEST_CASE("when the second device does not start, the first one is stopped and n
 TEST_CASE("a stopped session exerts no force on the tissue", "[haptic][session]") {
   struct Listening : test::AnalyticTissue {
     using AnalyticTissue::AnalyticTissue;
-    void end_tick(std::span<const VertexForce> forces) noexcept { pressing = forces.size(); }
+    void end_tick(std::span<const VertexForce> forces, std::span<const PointForce>) noexcept {
+      pressing = forces.size();
+    }
     std::size_t pressing = 0;
   } tissue(10, 0.04, 1e-3);
   MockDevice stylus(trajectory::poke({.from = {0, 0, 6e-3}, .to = {0, 0, 4e-3}, .approach = 0.05, .hold = 1e6}));

@@ -25,7 +25,7 @@ namespace {
 struct ListeningTissue : test::AnalyticTissue {
   using AnalyticTissue::AnalyticTissue;
   Status begin_tick() noexcept { return {}; }
-  void end_tick(std::span<const VertexForce> forces) noexcept {
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce>) noexcept {
     pressing = Vector3::Zero();
     for (const VertexForce& f : forces) pressing += f.force.in_model_axes();
     ++calls;

@@ -8,7 +8,9 @@ using namespace palpate;
 struct Listening : TissueAdaptor<TissueGroup> {
   using TissueAdaptor::TissueAdaptor;
 #ifndef PALPATE_GOOD_TWIN
-  void end_tick(std::span<const VertexForce> forces) noexcept { pressed = forces.size(); }
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce>) noexcept {
+    pressed = forces.size();
+  }
 #endif
   std::size_t pressed = 0;
 };

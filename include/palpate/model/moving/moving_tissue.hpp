@@ -260,6 +260,7 @@ class MovingTissue : public ModelBase {
   VectorX response_;  // of a body that is cut
   VertexCompliance compliance_;
   SecantCompliance secants_;
+  bool found_stiffness_ = false;               // a pair of the last step
   std::vector<NodeId> nodes_;                  // of every vertex
   std::vector<int> every_;                     // vertex
   std::vector<Vector3> rest_;                  // of every vertex, without loads [m]

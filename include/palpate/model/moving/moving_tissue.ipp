@@ -182,7 +182,9 @@ PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
 PALPATE_INLINE void MovingTissue::record_pair(const Forces& before, double error) noexcept {
   moved_before_.swap(moved_);
   find_moved(moved_);
-  secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count}, moved_before_, moved_, error);
+  const bool is_recorded = secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count},
+                                           moved_before_, moved_, error);
+  found_stiffness_ = found_stiffness_ || is_recorded;
 }
 
 PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
@@ -428,7 +430,7 @@ PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const 
 /// Where a press makes the tissue stiffer, ticks with the compliance at rest are unstable: the tool slides off.
 PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least = 0.2, followed = 0.3;  // part of the difference, in a step
-  if (!secants_.has_pairs()) return;
+  if (!std::exchange(found_stiffness_, false)) return;
   const double before = compliance_.scale();
   const double found = std::clamp(before * secants_.work_ratio(compliance_, rotation), least, 1.0);
   compliance_.set_scale(before + followed * (found - before));

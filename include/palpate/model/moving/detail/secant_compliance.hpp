@@ -56,13 +56,12 @@ class SecantCompliance {
   /// For that many vertices, and at most that many forces at a time.
   SecantCompliance(std::size_t vertices, std::size_t most_forces);
 
-  bool has_pairs() const noexcept { return count_ > 0; }
   /// Forgets all pairs.
   void clear() noexcept { count_ = 0; }
   /// Records that `before`, `after` [N] caused displacements `from`, `to` of the vertices [m], unless the forces hardly
   /// changed, compared with the `error` of the equilibrium relative to the forces, or the pair has no positive
-  /// compliance.
-  void record(std::span<const VertexForce> before, std::span<const VertexForce> after, std::span<const Vector3> from,
+  /// compliance: then returns false.
+  bool record(std::span<const VertexForce> before, std::span<const VertexForce> after, std::span<const Vector3> from,
               std::span<const Vector3> to, double error) noexcept;
   /// Work of the last pair relative to that which a compliance, rotated with the vertices, gives.
   double work_ratio(const VertexCompliance& compliance, const std::vector<Matrix3>& rotation) const noexcept;

@@ -31,7 +31,7 @@ PALPATE_INLINE void SecantCompliance::Pair::add(int vertex, const Vector3& f) no
     force.push_back({vertex, ModelVector(f)});
 }
 
-PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before, std::span<const VertexForce> after,
+PALPATE_INLINE bool SecantCompliance::record(std::span<const VertexForce> before, std::span<const VertexForce> after,
                                              std::span<const Vector3> from, std::span<const Vector3> to,
                                              double error) noexcept {
   if (count_ == pair_.size())
@@ -50,7 +50,9 @@ PALPATE_INLINE void SecantCompliance::record(std::span<const VertexForce> before
     product += f.force.in_model_axes().dot(pair.moved[static_cast<std::size_t>(f.vertex)]);
   }
   const double least = std::max(smallest_change, smallest_change_of_error * error);
-  if (!(change > least * least * size) || !(product > 0.0)) --count_;
+  if (change > least * least * size && product > 0.0) return true;
+  --count_;
+  return false;
 }
 
 PALPATE_INLINE double SecantCompliance::work_ratio(const VertexCompliance& compliance,

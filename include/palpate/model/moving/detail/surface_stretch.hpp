@@ -1,6 +1,7 @@
 // How the half-space below a stretched surface yields.
 #pragma once
 
+#include <palpate/contact/detail/triangle.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
