@@ -16,7 +16,7 @@
 using namespace palpate;
 using Catch::Matchers::WithinRel;
 
-namespace {
+namespace { namespace deep_press {
 
 constexpr double radius = 0.01, speed = 0.01;  // [m], [m/s]
 
@@ -69,13 +69,14 @@ void check(const DeepPress& found, const std::array<double, 4>& exact) {
   CHECK_FALSE(found.status.has(StatusFlag::lost_contact));
 }
 
+}  // namespace deep_press
 }  // namespace
 
 TEST_CASE("a sphere pressed by its radius has the force of another code", "[haptic][deep_press]") {
   SECTION("isochoric neo-Hooke") {
-    check(press(NeoHookeanIsochoric{5e3, 0.45, 1000.0}), {0.13476, 0.41699, 0.80179, 1.249});
+    deep_press::check(deep_press::press(NeoHookeanIsochoric{5e3, 0.45, 1000.0}), {0.13476, 0.41699, 0.80179, 1.249});
   }
   SECTION("logarithmic neo-Hooke") {
-    check(press(NeoHookeanLogarithmic{5e3, 0.45, 1000.0}), {0.1331, 0.4065, 0.7718, 1.1889});
+    deep_press::check(deep_press::press(NeoHookeanLogarithmic{5e3, 0.45, 1000.0}), {0.1331, 0.4065, 0.7718, 1.1889});
   }
 }
