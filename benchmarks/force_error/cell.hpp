@@ -89,7 +89,7 @@ Mesh<Tet4> tetrahedra_of(const Case& test);
 
 /// Edges of the true mesh at the places, per radius.
 inline constexpr double true_edges_per_radius = 5.0, true_edges_per_radius_of_plates = 7.0;
-/// The forces of Tet10 on a mesh refined near the places, with the compliance of that mesh alone. `finer`: edges
+/// The forces of Tet10 on meshes refined below each tool, with the compliance of that mesh alone. `finer`: edges
 /// shorter by this factor.
 Presses truth(const Case& test, double finer = 1.0);
 

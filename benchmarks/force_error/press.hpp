@@ -18,12 +18,17 @@ inline bool is_doubted(Status status) {
          status.has(StatusFlag::solver_not_converged) || status.has(StatusFlag::lost_contact);
 }
 
+/// Turns z to the outward normal of a place, for the tools pressed there.
+inline Eigen::Quaterniond turn_of(const TestPlace& place) {
+  return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), place.outward);
+}
+
 /// Presses one place to every depth; each force is that of a tick whose force has settled.
 inline std::array<Press, depths.size()> press(HapticServo& servo, const TestPlace& place, double radius, double reach) {
   servo.reset();
   std::array<Press, depths.size()> presses;
   ToolState state;
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), place.outward);
+  const Eigen::Quaterniond turn = turn_of(place);
   state.orientation = {turn.w(), turn.x(), turn.y(), turn.z()};
   Status status;
   const auto force_at = [&](double depth) {
@@ -48,19 +53,25 @@ inline std::array<Press, depths.size()> press(HapticServo& servo, const TestPlac
   return presses;
 }
 
-/// Presses all places with all tools of a case.
+/// Presses all places with a tool of a case.
 template <class Tissue>
-Presses press_all(Tissue& tissue, const Case& test, const ContactParameters& contact) {
+Presses::value_type press_tool(Tissue& tissue, const Case& test, std::size_t tool, const ContactParameters& contact) {
   ServoOptions options;
   options.coupling_stiffness = infinity;
   options.force_limits = ForceLimits{.peak_force = 1e6, .slew_rate = 1e9};
   options.contact = contact;
-  Presses presses(tools_of(test));
-  for (std::size_t t = 0; t < presses.size(); ++t) {
-    HapticServo servo(tissue, tool_of(t, test.radius), options);
-    for (const TestPlace& place : test.places)
-      presses[t].push_back(press(servo, place, test.radius, reach_of(t, test.radius)));
-  }
+  HapticServo servo(tissue, tool_of(tool, test.radius), options);
+  Presses::value_type presses;
+  for (const TestPlace& place : test.places)
+    presses.push_back(press(servo, place, test.radius, reach_of(tool, test.radius)));
+  return presses;
+}
+
+/// Presses all places with all tools of a case.
+template <class Tissue>
+Presses press_all(Tissue& tissue, const Case& test, const ContactParameters& contact) {
+  Presses presses;
+  for (std::size_t tool = 0; tool < tools_of(test); ++tool) presses.push_back(press_tool(tissue, test, tool, contact));
   return presses;
 }
 

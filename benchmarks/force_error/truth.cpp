@@ -35,6 +35,19 @@ PointCloud cloud_of(const Case& test) {
   return cloud;
 }
 
+/// Points of the surface below a tool, so that all that it can press is within a radius of one of them.
+PointCloud cloud_below(const Case& test, std::size_t tool) {
+  PointCloud cloud;
+  for (const TestPlace& place : test.places) {
+    const auto turn = turn_of(place);
+    const int across = tool == 2 ? 1 : 0, along = tool == 0 ? 0 : 1;
+    for (int i = -across; i <= across; ++i)
+      for (int j = -along; j <= along; ++j)
+        cloud.points.push_back(place.point + (tool == 2 ? 0.6 : 1.0) * test.radius * (turn * Vector3(i, j, 0.0)));
+  }
+  return cloud;
+}
+
 }  // namespace
 
 Mesh<Tet4> tetrahedra_of(const Case& test) {
@@ -43,19 +56,23 @@ Mesh<Tet4> tetrahedra_of(const Case& test) {
 }
 
 Presses truth(const Case& test, double finer) {
-  const double reach = (test.all_tools ? 1.25 : 1.0) * test.radius;
-  where::PointSet touched = where::sphere(test.places.front().point, reach);
-  for (const TestPlace& place : test.places) touched = touched || where::sphere(place.point, reach);
-  Scene scene;
-  scene.fix(test.body.fixed).touch(touched);
-  const double per_radius = finer * (test.all_tools ? true_edges_per_radius_of_plates : true_edges_per_radius);
-  const double edge = std::min(test.facet, test.radius / per_radius);
-  HapticFEModel<Tet10, LinearElastic> model(
-      promote<Tet10>(refine_near(test.body.tetrahedra, cloud_of(test), {edge, 0.5})), scene, materials_of(test));
   ContactParameters contact;
   contact.capacity = 512;
   contact.subfacet_compliance = false;
-  return press_all(model, test, contact);
+  Presses presses;
+  for (std::size_t tool = 0; tool < tools_of(test); ++tool) {
+    const PointCloud below = cloud_below(test, tool);
+    where::PointSet touched = where::sphere(below.points.front(), test.radius);
+    for (const Vector3& point : below.points) touched = touched || where::sphere(point, test.radius);
+    Scene scene;
+    scene.fix(test.body.fixed).touch(touched);
+    const double edge = std::min(
+        test.facet, test.radius / (finer * (tool == 2 ? true_edges_per_radius_of_plates : true_edges_per_radius)));
+    HapticFEModel<Tet10, LinearElastic> model(promote<Tet10>(refine_near(test.body.tetrahedra, below, {edge, 0.5})),
+                                              scene, materials_of(test));
+    presses.push_back(press_tool(model, test, tool, contact));
+  }
+  return presses;
 }
 
 }  // namespace force_error

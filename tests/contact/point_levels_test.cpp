@@ -24,8 +24,8 @@ ContactSamples plane_of_samples() {
 
 /// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the
 /// points, relative to that of hexagons.
-Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity,
-            double density = 1.0) {
+Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity, double density = 1.0,
+            const Areas& vertices = {}) {
   std::array<PointLevels::Size, maximum_tools> sizes;
   sizes.fill({tip_radius, tip_radius});
   std::array<bool, maximum_tools> near{};
@@ -44,7 +44,7 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
     for (int i = used[t]; i < points; ++i) levels.note_left_out(tool, 1e-3);
     pressing[t] = points_at(levels.level(tool)) * used[t] / std::max(1, points);
   }
-  levels.end_tick(used, pressing, {});
+  levels.end_tick(used, pressing, {}, vertices);
   return used;
 }
 
@@ -65,6 +65,23 @@ TEST_CASE("a press has about the wanted number of points at any size of its area
   }
   tick(levels, samples, {0.0}, 64);
   CHECK(levels.level(0) == finest);
+}
+
+TEST_CASE("at large strain a press has about as many points as vertices, as far as there are rows",
+          "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  const auto points = [&](double vertices, int capacity) {
+    PointLevels levels;
+    Counts used{};
+    for (int i = 0; i < 400; ++i) used = tick(levels, samples, {6e-5}, capacity, 1.0, {vertices});
+    return used[0];
+  };
+  CHECK(points(4.0, 128) == points(0.0, 128));
+  CHECK(points(0.0, 128) <= 24 * 1.6);
+  CHECK(points(60.0, 128) >= 0.7 * 60);
+  CHECK(points(60.0, 128) <= 128);
+  CHECK(points(1000.0, 128) <= 128);
+  CHECK(points(1000.0, 64) <= 64);
 }
 
 TEST_CASE("levels change in small steps", "[contact][levels]") {

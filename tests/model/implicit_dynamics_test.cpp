@@ -489,3 +489,38 @@ TEST_CASE("a nearly incompressible bar follows its support in steps of two itera
   for (int k = 0; k < 60; ++k) pull(0.0);
   CHECK(d.displacement().cwiseAbs().maxCoeff() <= 1e-5);
 }
+
+TEST_CASE("a spring that pushes a point ends in equilibrium with the body, by Newton's method", "[model][dynamics]") {
+  const auto made = [] { return make_deformable_body(block(), Scene().fix("z0")); };
+  const DeformableBody body = made();
+  const auto is_on_top = [&](std::size_t i) { return body.positions[i][2] > 0.0799; };
+  std::size_t first = 0;
+  while (!is_on_top(first)) ++first;
+  const auto corner = static_cast<NodeId>(first), beside = corner + 1;  // on an edge of the block
+  const Vector3 down = Vector3(0.3, 0.0, -1.0).normalized();
+  const ContactSpring spring{{corner, beside, beside}, {0.6, 0.4, 0.0}, down, 0.01, 200.0};
+
+  const DynamicsParameters parameters{.mass_damping = 20.0, .newton = {.maximum_iterations = 30, .tolerance = 1e-10}};
+  ImplicitDynamics pushed(made(), parameters), loaded(made(), parameters);
+  pushed.set_springs({&spring, 1});
+  int most = 0;
+  for (int k = 0; k < 100; ++k) {
+    const StepReport report = pushed.step(0.05);
+    REQUIRE(report.newton.converged);
+    REQUIRE(report.energy_bounded);
+    most = std::max(most, report.newton.iterations);
+  }
+  CHECK(most <= 8);  // also the stiffness of the spring is in the tangent
+  const double push = spring.push(pushed.displacement());
+  CHECK(push > 0.05);
+  VectorX load = VectorX::Zero(pushed.displacement().size());
+  CHECK_THAT(add_pushes({&spring, 1}, pushed.displacement(), load), WithinRel(0.5 * push * push / 200.0, 1e-12));
+  loaded.set_load(load);
+  for (int k = 0; k < 100; ++k) loaded.step(0.05);
+  CHECK((loaded.displacement() - pushed.displacement()).norm() < 1e-7 * loaded.displacement().norm());
+
+  // A body that is farther away than the spring reaches is not pulled.
+  pushed.set_springs(std::array{ContactSpring{spring.nodes, spring.weights, down, -0.01, 200.0}});
+  for (int k = 0; k < 100; ++k) pushed.step(0.05);
+  CHECK(pushed.displacement().norm() < 1e-7 * loaded.displacement().norm());
+}

@@ -9,11 +9,13 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Largest number of tools of one contact problem.
 inline constexpr std::size_t maximum_tools = 8;
-/// Default number of contacts of a contact problem with one tool, and what every other tool adds.
-inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 32;
+/// Default number of contacts of a contact problem with one tool, and what every other tool adds; as many times more
+/// where tissue is at large strain.
+inline constexpr int default_contact_capacity = 64, default_capacity_per_tool = 32, capacity_at_large_strain = 2;
 /// The default with all tools.
 inline constexpr int largest_default_capacity =
-    default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1);
+    capacity_at_large_strain *
+    (default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1));
 
 /// Radii of the tools of a session [m].
 struct ToolRadii {
@@ -30,7 +32,8 @@ struct ContactParameters {
   double force_tolerance = 1e-3;    ///< relative change of the force between linearisations that ends the tick; for
                                     ///< spheres without friction also its estimate after the first one
   bool subfacet_compliance = true;  ///< points finer than facets, where the surface has a SubfacetCompliance
-  int pressing_points = 18;         ///< of them in a press, about the same at any depth and on any mesh
+  int pressing_points = 18;         ///< of them in a press, about the same at any depth and on any mesh; at large
+                                    ///< strain on finer meshes as many as vertices
   double sample_spacing = 0.5;      ///< of contact points on other surfaces, in radii of the smallest tool
   double friction = 0.0;            ///< Coulomb's coefficient; 0 has no cost
   double grasp_radius = 0.0;        ///< [m] a tool that grasps holds the vertices within it, up to eight; 0: one point
@@ -38,7 +41,7 @@ struct ContactParameters {
                      ///< 0: the default for the tools
 
   /// The same with a capacity for this number of tools.
-  ContactParameters for_tools(std::size_t tools) const noexcept;
+  ContactParameters for_tools(std::size_t tools, bool large_strain = false) const noexcept;
 };
 
 /// The point of a tool's core closest to another point. The core is the centre of a sphere, the segment of a capsule or

@@ -8,11 +8,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ContactParameters ContactParameters::for_tools(std::size_t tools) const noexcept {
+PALPATE_INLINE ContactParameters ContactParameters::for_tools(std::size_t tools, bool large_strain) const noexcept {
   ContactParameters p = *this;
+  const int others = static_cast<int>(std::max<std::size_t>(tools, 1)) - 1;
   if (p.capacity == 0)
     p.capacity =
-        default_contact_capacity + default_capacity_per_tool * (static_cast<int>(std::max<std::size_t>(tools, 1)) - 1);
+        (large_strain ? capacity_at_large_strain : 1) * (default_contact_capacity + default_capacity_per_tool * others);
   return p;
 }
 PALPATE_INLINE void ContactTool::lift() noexcept {

@@ -118,6 +118,7 @@ class ContactProblem {
   static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);
   inline void set_levels(Tools tools) noexcept;
   Status update_candidates(const TissueView& tissue, Tools tools) noexcept;
+  std::array<double, maximum_tools> vertices_of_print(const ContactSurface& surface) const noexcept;
   void start_levels(const TissueView& tissue, Tools tools) noexcept;
   void prefetch(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;

@@ -14,7 +14,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, const ToolRadii& radii,
                                               const ContactParameters& parameters)
-    : parameters_(checked(parameters.for_tools(1))),
+    : parameters_(checked(parameters.for_tools(1, surface.has_large_strain()))),
       displacement_(surface.vertex_count(), vertices_per_contact * parameters_.capacity),
       start_(surface.vertex_count(), vertices_per_contact * parameters_.capacity, 1),
       candidates_(made_samples(surface, radii, parameters_),
@@ -98,6 +98,24 @@ PALPATE_INLINE void ContactProblem::start_levels(const TissueView& tissue, Tools
   }
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (begins[t]) levels_.start(candidates_.samples(), static_cast<int>(t), area[t]);
+}
+
+/// Per tool the number of vertices in the part of the surface that it presses, where strains are large. A vertex has
+/// the area of two facets.
+inline std::array<double, maximum_tools> ContactProblem::vertices_of_print(
+    const ContactSurface& surface) const noexcept {
+  std::array<double, maximum_tools> vertices{};
+  const SubfacetCompliance* const rest = candidates_.subfacet();
+  if (!surface.has_large_strain() || rest == nullptr) return vertices;
+  for (int i = 0; i < static_cast<int>(rows_.contacts().size()); ++i) {
+    const Candidate& c = rows_.candidate(i);
+    const Triangle& t = surface.triangle(c.triangle);
+    if (!(c.force > 0.0) || c.grasped || !std::all_of(t.begin(), t.end(), [&](int v) { return rest->has_place(v); }))
+      continue;
+    const Vector3& x = rest->vertex(t[0]).position;
+    vertices[at(c.tool)] += c.area / cross(rest->vertex(t[1]).position - x, rest->vertex(t[2]).position - x).norm();
+  }
+  return vertices;
 }
 
 /// A grasped point keeps the area that it had when it was grasped: its force does not change then.
@@ -201,7 +219,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   rows_.stick(tools);
   std::array<int, maximum_tools> grasped{};
   for (std::size_t t = 0; t < maximum_tools; ++t) grasped[t] = static_cast<int>(grasps_[t].rows().size());
-  levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped);
+  levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped,
+                   vertices_of_print(tissue.contact_surface()));
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
@@ -387,14 +406,18 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
 /// Whether a part of the force is at points where the body is no half-space, or that have only the compliance of the
 /// mesh, on facets that are too long: for the dent of the tool, or, where no error was measured, for the radius of the
 /// contact; or at points that are too far apart for the thickness of the body; or at one or two points, on facets so
-/// long that they have no more.
+/// long that they have no more; or, in a deep press at large strain, on facets that are long for the tool: they do not
+/// show how the surface stretches.
 PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool, bool measured) const noexcept {
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
+  constexpr double deep = 0.4, long_for_deep = 0.65;  // radii
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
   constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
   double longest = tool.radius / coarse;
   if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
+  const double longest_stretched =
+      surface.has_large_strain() && depth > deep * tool.radius ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
   int points = 0;  // with an area
   for (int i = 0; i < rows_.count(); ++i) {
@@ -403,7 +426,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
     all += c.force;
     points += rows_.has_area(i);
     const double length = surface.facet_length(c.triangle);
-    if (rows_.is_on_thin_body(i) || (!rows_.is_known(i) && length > longest))
+    if (rows_.is_on_thin_body(i) || length > longest_stretched || (!rows_.is_known(i) && length > longest))
       on_coarse += c.force;
     else if (length > very_long * tool.radius)
       on_very_long += c.force;

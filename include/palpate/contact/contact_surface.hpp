@@ -74,6 +74,10 @@ class ContactSurface {
   /// Sets the compliance of points finer than facets; null: points have that of the mesh.
   void set_subfacet(std::shared_ptr<const SubfacetCompliance> subfacet) noexcept { subfacet_ = std::move(subfacet); }
   const std::shared_ptr<const SubfacetCompliance>& subfacet() const noexcept { return subfacet_; }
+  /// Whether the material below is stretched where tools press deep. Forces on points that are farther apart than the
+  /// vertices would then invert elements.
+  void set_large_strain(bool large) noexcept { large_strain_ = large; }
+  bool has_large_strain() const noexcept { return large_strain_; }
   /// Sets the errors that were measured on this surface; null: none were.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
@@ -166,6 +170,7 @@ class ContactSurface {
   ExpectedSurface expected_;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
+  bool large_strain_ = false;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const SubfacetCompliance> subfacet_;
   std::shared_ptr<const ForceAccuracy> accuracy_;

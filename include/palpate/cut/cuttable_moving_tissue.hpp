@@ -246,6 +246,7 @@ class CuttableMovingTissue : public MovingTissue {
     made.side = slit_sides(surface.triangles(), origin);
     made.parent = parents();
     made.surface = ContactSurface(std::move(positions), std::move(triangles));
+    made.surface.set_large_strain(true);
     made.surface.set_materials(elastic_body().contact_materials(elements));
     made.surface.set_subfacet(half_space_after_cuts(half_space_, body_->topology, made.nodes));
     if (tools_.radii.smallest > 0.0)

@@ -34,7 +34,8 @@ inline ContactParameters contact_parameters(const TissueView& tissue, ContactPar
 /// is cut then makes contact problems like this one, with room for the vertices that a cut adds.
 inline ContactProblem prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
                                        const ContactParameters& contact) {
-  const ContactParameters parameters = contact_parameters(tissue, contact);
+  const ContactParameters parameters =
+      contact_parameters(tissue, contact.for_tools(tools.size(), tissue.contact_surface().has_large_strain()));
   tissue.prepare_tools(radii_of(tools), parameters);
   return {tissue.contact_surface(), radii_of(tools), parameters};
 }
@@ -56,7 +57,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       notes_(tissue_.notes()),
       tools_(tools),
       contact_tools_(make_contact_tools(tools_, options)),
-      problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact.for_tools(tools.size()))),
+      problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact)),
       coarse_facets_(report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
       energies_(std::move(energies)),
       forces_(tools.size()),

@@ -67,9 +67,11 @@ class PointLevels {
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
   /// Sets the levels for the next tick. Per tool: rows that press, how many points of equal area its print has
-  /// (ContactRows::points_of_print), and rows of grasped points.
+  /// (ContactRows::points_of_print), rows of grasped points, and vertices in its print that should not be fewer than
+  /// points, 0 where that does not matter.
   void end_tick(const std::array<int, maximum_tools>& used, const std::array<double, maximum_tools>& points,
-                const std::array<int, maximum_tools>& grasped) noexcept;
+                const std::array<int, maximum_tools>& grasped,
+                const std::array<double, maximum_tools>& vertices = {}) noexcept;
   /// Penetration of the deepest point without a row [m].
   double deepest() const noexcept { return deepest_; }
 
@@ -82,7 +84,7 @@ class PointLevels {
   static constexpr double longest_step = 0.1, full_step = 0.5, many_rows = 0.65;
   static constexpr std::size_t at(int tool) noexcept { return static_cast<std::size_t>(tool); }
   void divide() noexcept;
-  int wanted(std::size_t tool) const noexcept;
+  double wanted(std::size_t tool) const noexcept;
   double step(std::size_t tool, int used, double growth, double points) noexcept;
   double least_with_rows(std::size_t tool, bool is_many, double rows) noexcept;
   double touch_level(std::size_t tool) const noexcept { return std::max(touch_[tool], with_room_[tool]); }
@@ -91,6 +93,7 @@ class PointLevels {
   std::array<int, maximum_tools> share_{}, had_{}, needed_{}, left_out_{}, skipped_{};
   std::array<double, maximum_tools> radius_{}, level_{}, goal_{}, least_{}, touch_{}, most_{}, crowded_{};
   std::array<double, maximum_tools> with_room_{};  // the least level with room in the list of candidates
+  std::array<double, maximum_tools> vertices_{};   // in the print of the last tick, or 0
   std::array<double, maximum_tools> used_{};       // the levels of the last tick
   /// The last time that the points of a tool did not fit.
   struct Overflow {

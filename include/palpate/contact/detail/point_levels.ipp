@@ -65,8 +65,10 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
 
 /// The number of points for which a level is chosen. A tool whose share is small gets half of it, so that there are
 /// rows for the points of the rim, and while points fade in.
-PALPATE_INLINE int PointLevels::wanted(std::size_t tool) const noexcept {
-  return std::min(limits_.wanted, std::max(1, share_[tool] / 2));
+PALPATE_INLINE double PointLevels::wanted(std::size_t tool) const noexcept {
+  constexpr double per_vertex = 1.2;
+  const double points = std::max(static_cast<double>(limits_.wanted), per_vertex * vertices_[tool]);
+  return std::min(points, std::max(1.0, 0.5 * share_[tool]));
 }
 
 /// The whole level that a tool goes to; `size`: the points of its print, were the level 0. Levels differ by a factor of
@@ -145,7 +147,8 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double growt
   const double expected = growth * used;
   const bool is_full = left_out_[tool] > 0 || expected > most_rows * share_[tool];
   const double size = points * std::exp2(level_[tool]), rows = used * std::exp2(std::floor(level_[tool]));
-  const bool has_many = used > rows_per_point * limits_.wanted && level_[tool] < most_[tool];
+  const bool has_many =
+      used > rows_per_point * std::max<double>(limits_.wanted, wanted(tool)) && level_[tool] < most_[tool];
   goal_[tool] = std::max(next_goal(tool, size), least_with_rows(tool, is_full || has_many, rows));
   const double change = goal_[tool] - level_[tool];
   if (left_out_[tool] > 0 || expected > share_[tool]) return std::max(1.0, change);
@@ -155,11 +158,13 @@ PALPATE_INLINE double PointLevels::step(std::size_t tool, int used, double growt
 
 PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& used,
                                           const std::array<double, maximum_tools>& points,
-                                          const std::array<int, maximum_tools>& grasped) noexcept {
+                                          const std::array<int, maximum_tools>& grasped,
+                                          const std::array<double, maximum_tools>& vertices) noexcept {
   // In a fast press: up to twice as many rows in the next tick as in this one. When points fade in it does not go on.
   constexpr double fastest = 2.0;
   std::array<double, maximum_tools> growth{};
   had_ = share_;
+  vertices_ = vertices;
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     const int needs = used[t] + left_out_[t] + grasped[t], before = std::max(1, std::exchange(needed_[t], needs));
     const bool has_same_points = std::floor(std::exchange(used_[t], level_[t])) == std::floor(level_[t]);

@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Maximum number of springs of a motion.
-inline constexpr std::size_t most_springs = 512;
+inline constexpr std::size_t most_springs = 640;
 
 /// A spring that pushes a point of the surface along a direction and never pulls it.
 struct ContactSpring {
@@ -26,6 +27,22 @@ struct ContactSpring {
     for (std::size_t a = 0; a < 3; ++a) moved += weights[a] * direction.dot(node_vector(u, Index{nodes[a]}));
     return stiffness * std::max(0.0, reach - moved);
   }
+  /// Energy at displacements u [J].
+  double energy(const VectorX& u) const noexcept {
+    const double force = push(u);
+    return 0.5 * force * force / stiffness;
+  }
 };
+
+/// Adds the forces of springs at displacements u to `force`, 3 entries per node [N]. Returns their energy [J].
+inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& u, VectorX& force) noexcept {
+  double energy = 0.0;
+  for (const ContactSpring& s : springs) {
+    const double push = s.push(u);
+    for (std::size_t a = 0; a < 3; ++a) add_node_vector(force, Index{s.nodes[a]}, s.weights[a] * push * s.direction);
+    energy += 0.5 * push * push / s.stiffness;
+  }
+  return energy;
+}
 
 }}  // namespace palpate

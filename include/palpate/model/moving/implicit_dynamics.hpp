@@ -10,7 +10,11 @@
 #include <palpate/integrator/newton.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/contact_spring.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
+
+#include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -76,6 +80,9 @@ class ImplicitDynamics {
   /// Sets the forces from now on, replacing the loads of the scene [N]. Throws bad_argument for a wrong size; does not
   /// allocate.
   void set_load(const VectorX& load);
+  /// Sets the springs that act besides the forces from the next step or correction on; at most `most_springs`, each on
+  /// nodes of one element. Does not allocate.
+  void set_springs(std::span<const ContactSpring> springs) noexcept;
   /// Sets the values of the prescribed components at the end of the next step [m]. Throws as set_load.
   void set_prescribed(const VectorX& values);
 
@@ -102,13 +109,14 @@ class ImplicitDynamics {
 
   /// Factorises the tangent of a step at a displacement.
   bool prepare_at(const VectorX& u) noexcept;
+  void add_springs(const VectorX& u, BlockMatrix& k) const noexcept;
 
   static DeformableBody checked(DeformableBody body, const DynamicsParameters& p);
 
   /// Sets x_ to the predicted or the current state, whichever has the lower potential of the step.
   void start_from_the_lower() noexcept;
-  /// Sets x_ to the state that the tangent predicts when supports move, unless its potential is higher. Moved alone, they
-  /// compress only the elements next to them. Costs a factorisation.
+  /// Sets x_ to the state that the tangent predicts when supports move, unless its potential is higher. Moved alone,
+  /// they compress only the elements next to them. Costs a factorisation.
   void predict() noexcept;
   bool supports_move() const noexcept;
   /// Sets a state that has lasted for `seconds`; infinite: fully relaxed.
@@ -144,6 +152,7 @@ class ImplicitDynamics {
   VectorX from_, unbalanced_, balance_;  // displacement and residual force at the start of a step; residual force now
   VectorX trial_, velocity_, acceleration_, force_, full_, other_, damping_force_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // workspaces of corrections
+  std::vector<ContactSpring> springs_;
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of step_
   bool factorised_ = false;  // tangent_ is that of this step
@@ -155,6 +164,7 @@ class ImplicitDynamics {
   };
   Work work_, work_before_;  // since the state was set: now, and at the start of the step
   double start_energy_ = 0.0, stored_ = 0.0;
+  double pushed_ = 0.0;  // energy of the springs
 };
 
 }}  // namespace palpate

@@ -38,6 +38,7 @@ PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(DeformableBody body, const Dyn
       start_(size()),
       heaviest_(body_.lumped.maxCoeff()),
       small_(std::sqrt(std::numeric_limits<double>::epsilon()) * extent(body_.positions)) {
+  springs_.reserve(most_springs);
   body_.elastic->tangent(u_, tangent_.matrix());
   if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
   find_acceleration();
@@ -135,6 +136,11 @@ PALPATE_INLINE void ImplicitDynamics::set_load(const VectorX& load) {
   load_ = load;
 }
 
+PALPATE_INLINE void ImplicitDynamics::set_springs(std::span<const ContactSpring> springs) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
+  springs_.assign(springs.begin(), springs.begin() + count);
+}
+
 PALPATE_INLINE void ImplicitDynamics::set_prescribed(const VectorX& values) {
   require_entries(values, u_.size());
   body_.conditions.prescribed = values;
@@ -160,10 +166,11 @@ PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& resi
   stored_ = body_.elastic->energy(trial_);
   scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
   full_ = load_ - force_ - full_ - other_;
+  pushed_ = add_pushes(springs_, trial_, full_);
   body_.conditions.gather(full_, residual);
   const double work = load_.dot(trial_);
-  energy_scale_ = moving + std::abs(stored_) + std::abs(work);
-  return moving + stored_ - work;
+  energy_scale_ = moving + std::abs(stored_) + std::abs(work) + pushed_;
+  return moving + stored_ + pushed_ - work;
 }
 
 PALPATE_INLINE bool ImplicitDynamics::prepare(const VectorX& x) noexcept {
@@ -193,7 +200,19 @@ PALPATE_INLINE bool ImplicitDynamics::prepare_at(const VectorX& u) noexcept {
   const double per_v = step_.velocity_per_displacement();
   add_mass(step_.acceleration_per_displacement() + parameters_.mass_damping * per_v, k);
   if (damping_.size() > 0) k.add(parameters_.stiffness_damping * per_v, damping_);
+  add_springs(u, k);
   return factorised_ = tangent_.factorise();
+}
+
+PALPATE_INLINE void ImplicitDynamics::add_springs(const VectorX& u, BlockMatrix& k) const noexcept {
+  for (const ContactSpring& s : springs_) {
+    if (!(s.push(u) > 0.0)) continue;
+    const Matrix3 stiffness = s.stiffness * s.direction * s.direction.transpose();
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b)
+        if (s.nodes[b] <= s.nodes[a])
+          k.block(k.pattern().find(s.nodes[a], s.nodes[b])) += s.weights[a] * s.weights[b] * stiffness;
+  }
 }
 
 PALPATE_INLINE DeformableBody ImplicitDynamics::checked(DeformableBody body, const DynamicsParameters& p) {
@@ -259,7 +278,8 @@ PALPATE_INLINE void ImplicitDynamics::accept() noexcept {
     if (body_.conditions.is_constrained(dof))
       support_work += 0.5 * (unbalanced_[dof] + full_[dof]) * (trial_[dof] - from_[dof]);
   work_ = work_before_;
-  work_.of_loads += load_.dot(trial_ - from_);
+  work_.of_loads += load_.dot(trial_ - from_) - pushed_;
+  for (const ContactSpring& s : springs_) work_.of_loads += s.energy(from_);
   work_.most = std::max(work_.most, std::abs(work_.of_loads));
   work_.of_supports += std::abs(support_work);
   balance_ = full_;

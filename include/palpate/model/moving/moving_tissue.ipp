@@ -74,6 +74,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   view.surface = ContactSurface(view.free, triangles_);
   view.surface.expect(view.pressed, {});
   view.surface.set_unloaded(unloaded());
+  view.surface.set_large_strain(stretches_);
   view.surface.set_materials(elastic_body().contact_materials(touchable.elements));
   if (!touchable.elements.empty())
     view.surface.set_subfacet(
@@ -430,6 +431,7 @@ PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const 
 /// Where a press makes the tissue stiffer, ticks with the compliance at rest are unstable: the tool slides off.
 PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least = 0.2, followed = 0.3;  // part of the difference, in a step
+  if (used_.count == 0) compliance_.set_scale(1.0);
   if (!std::exchange(found_stiffness_, false)) return;
   const double before = compliance_.scale();
   const double found = std::clamp(before * secants_.work_ratio(compliance_, rotation), least, 1.0);

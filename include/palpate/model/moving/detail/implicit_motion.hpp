@@ -15,6 +15,7 @@ class ImplicitMotion final : public TissueMotion {
 
   MotionStep step(double h) noexcept override;
   bool correct(const VectorX& more) noexcept override;
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override;
   bool prepare_response(double h) noexcept override;
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
   const VectorX& displacement() const noexcept override;

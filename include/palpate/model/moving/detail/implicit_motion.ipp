@@ -23,6 +23,10 @@ PALPATE_INLINE MotionStep ImplicitMotion::step(double h) noexcept {
 PALPATE_INLINE bool ImplicitMotion::correct(const VectorX& more) noexcept {
   return motion_.correct(more);
 }
+PALPATE_INLINE bool ImplicitMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
+  motion_.set_springs(springs);
+  return true;
+}
 PALPATE_INLINE bool ImplicitMotion::prepare_response(double h) noexcept {
   return motion_.prepare_response(h);
 }

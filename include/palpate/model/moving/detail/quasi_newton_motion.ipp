@@ -376,7 +376,7 @@ PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
   double moving = 0.0;
   full_ = load_ - force_;
   scale_ = std::max(force_.norm(), load_.norm());
-  const double pushed = add_springs();
+  const double pushed = add_pushes(springs_, trial_, full_);
   if (length_ < infinity) {
     step_.find_motion(trial_, velocity_, acceleration_);
     inertial_ = inertia_.cwiseProduct(acceleration_);
@@ -389,16 +389,6 @@ PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
   const double work = load_.dot(trial_);
   potential_scale_ = std::abs(stored_) + std::abs(work) + moving + pushed;
   return moving + stored_ + pushed - work;
-}
-
-PALPATE_INLINE double QuasiNewtonMotion::add_springs() noexcept {
-  double energy = 0.0;
-  for (const ContactSpring& s : springs_) {
-    const double push = s.push(trial_);
-    for (std::size_t a = 0; a < 3; ++a) add_node_vector(full_, Index{s.nodes[a]}, s.weights[a] * push * s.direction);
-    energy += 0.5 * push * push / s.stiffness;
-  }
-  return energy;
 }
 
 PALPATE_INLINE bool QuasiNewtonMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
