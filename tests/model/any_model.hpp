@@ -68,7 +68,7 @@ class AnyModel : public StillTissue {
   virtual const ContactSurface& contact_surface() const noexcept = 0;
   virtual Status require_columns(std::span<const int>) noexcept = 0;
   virtual void prefetch(std::span<const int>) noexcept = 0;
-  virtual Matrix3 vertex_rotation(int) const noexcept = 0;
+  virtual Matrix3 half_space_map(int) const noexcept = 0;
   virtual Matrix3 compliance(int, int) const noexcept = 0;
   virtual double compliance_bound(int) const noexcept = 0;
   virtual std::uint64_t compliance_revision() const noexcept = 0;

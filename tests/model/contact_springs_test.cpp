@@ -49,6 +49,17 @@ TEST_CASE("contact springs have the forces of the tick where the tick leaves the
   CHECK(read[0].force.in_model_axes().norm() == 0.0);
 }
 
+TEST_CASE("a contact spring of a grasped point also pulls", "[model][contact_springs]") {
+  ContactSprings springs(4, 8, 8);
+  const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}, true}};
+  std::vector<VertexForce> force{{0, {0, 0, -2.0}}};
+  springs.set(force, one, nodes, moved, compliance);
+  VectorX u = VectorX::Zero(30);
+  u[3 * 5 + 2] = -1.0;  // far along the force
+  springs.read(u, force);
+  CHECK(force[0].force.in_model_axes()[2] > 1.0);
+}
+
 TEST_CASE("all contact springs together are three times as stiff as the tissue", "[model][contact_springs]") {
   ContactSprings springs(4, 8, 8);
   const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}}};

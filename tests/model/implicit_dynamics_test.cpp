@@ -519,6 +519,20 @@ TEST_CASE("a spring that pushes a point ends in equilibrium with the body, by Ne
   for (int k = 0; k < 100; ++k) loaded.step(0.05);
   CHECK((loaded.displacement() - pushed.displacement()).norm() < 1e-7 * loaded.displacement().norm());
 
+  // A correction knows them, too.
+  const auto before = [&] {
+    auto d = std::make_unique<ImplicitDynamics>(made(), parameters);
+    d->step(0.05);
+    return d;
+  };
+  const auto corrected = before();
+  corrected->set_springs({&spring, 1});
+  CHECK(corrected->correct(VectorX::Zero(load.size())));
+  const auto stepped = std::make_unique<ImplicitDynamics>(made(), parameters);
+  stepped->set_springs({&spring, 1});
+  stepped->step(0.05);
+  CHECK((corrected->displacement() - stepped->displacement()).norm() < 0.2 * stepped->displacement().norm());
+
   // A body that is farther away than the spring reaches is not pulled.
   pushed.set_springs(std::array{ContactSpring{spring.nodes, spring.weights, down, -0.01, 200.0}});
   for (int k = 0; k < 100; ++k) pushed.step(0.05);

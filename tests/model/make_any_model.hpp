@@ -40,8 +40,8 @@ class ModelOf final : public AnyModel {
   const ContactSurface& contact_surface() const noexcept override { return model_.contact_surface(); }
   Status require_columns(std::span<const int> vertices) noexcept override { return model_.require_columns(vertices); }
   void prefetch(std::span<const int> vertices) noexcept override { model_.prefetch(vertices); }
-  Matrix3 vertex_rotation(int v) const noexcept override {
-    return TissueView(const_cast<HapticFEModel<Tet4, LinearElastic, Policy>&>(model_)).vertex_rotation(v);
+  Matrix3 half_space_map(int v) const noexcept override {
+    return TissueView(const_cast<HapticFEModel<Tet4, LinearElastic, Policy>&>(model_)).half_space_map(v);
   }
   Matrix3 compliance(int i, int j) const noexcept override { return model_.compliance(i, j); }
   double compliance_bound(int j) const noexcept override { return model_.compliance_bound(j); }

@@ -16,7 +16,7 @@ struct StillTissue {
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   NoHook prepare_tools(const ToolRadii&, const ContactParameters&) noexcept { return {}; }
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
-  NoHook vertex_rotation(int) const noexcept { return {}; }
+  NoHook half_space_map(int) const noexcept { return {}; }
   NoHook background_work() noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
   NoHook report_failed(bool) noexcept { return {}; }

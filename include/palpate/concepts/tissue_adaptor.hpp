@@ -45,7 +45,7 @@ class TissueAdaptor {
     return tissue_->prepare_tools(radii, parameters);
   }
   auto try_cut(const BladeSweep& sweep) noexcept { return tissue_->try_cut(sweep); }
-  auto vertex_rotation(int v) const noexcept { return tissue().vertex_rotation(v); }
+  auto half_space_map(int v) const noexcept { return tissue().half_space_map(v); }
   auto background_work() { return tissue_->background_work(); }
   auto report_slow(bool slow) noexcept { return tissue_->report_slow(slow); }
   auto report_failed(bool failed) noexcept { return tissue_->report_failed(failed); }

@@ -81,8 +81,8 @@ concept HasTryCut = requires(T& tissue, const BladeSweep& sweep) {
   { tissue.try_cut(sweep) } noexcept -> HookResult<bool>;
 };
 template <class T>
-concept HasVertexRotation = requires(const T& constant) {
-  { constant.vertex_rotation(0) } noexcept -> HookResult<Matrix3>;
+concept HasHalfSpaceMap = requires(const T& constant) {
+  { constant.half_space_map(0) } noexcept -> HookResult<Matrix3>;
 };
 template <class T>
 concept HasWorkHooks = requires(T& tissue, bool is) {
@@ -92,7 +92,7 @@ concept HasWorkHooks = requires(T& tissue, bool is) {
 };
 template <class T>
 concept HasHooks = HasPrefetch<T> && HasBeginTick<T> && HasEndTick<T> && HasUpdates<T> && HasExchangeContacts<T> &&
-                   HasPrepareTools<T> && HasTryCut<T> && HasVertexRotation<T> && HasWorkHooks<T>;
+                   HasPrepareTools<T> && HasTryCut<T> && HasHalfSpaceMap<T> && HasWorkHooks<T>;
 
 template <class Member>
 struct ClassOf;
@@ -163,7 +163,7 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// it.
 /// - `try_cut(sweep)` -> bool: requests a cut along a BladeSweep in the world frame; false when too many requests are
 /// pending. Only such a tissue accepts a BladeTool.
-/// - `vertex_rotation(v)` const -> Matrix3: M_v, with which the displacement of the half-space below the surface
+/// - `half_space_map(v)` const -> Matrix3: M_v, with which the displacement of the half-space below the surface
 /// (SubfacetCompliance) is M_v G M_w^T f: how the surface at vertex v is rotated, and, where stretch makes it stiffer,
 /// that rotation times the root of what is left.
 /// - `background_work()` -> BackgroundStep: work in a background thread, called by a BackgroundWorker: time steps,

@@ -53,7 +53,8 @@ struct VertexForce {
 struct PointForce {
   std::array<int, 3> vertices{-1, -1, -1};
   std::array<double, 3> weights{};
-  ModelVector force{};  ///< on the tissue [N]
+  ModelVector force{};   ///< on the tissue [N]
+  bool grasped = false;  ///< also pulled back
 };
 
 }}  // namespace palpate

@@ -31,7 +31,7 @@ PALPATE_INLINE std::span<const PointForce> ContactProblem::point_forces() noexce
   on_points_.clear();
   for (const Contact& c : rows_.contacts())
     if (const Vector3 total = c.total(); total.squaredNorm() > 0.0)
-      on_points_.push_back({c.vertices, c.weights, ModelVector(-total)});
+      on_points_.push_back({c.vertices, c.weights, ModelVector(-total), c.grasped});
   return on_points_;
 }
 

@@ -12,10 +12,9 @@ namespace detail {
 
 /// Whether all hooks except prefetch do nothing.
 template <class T>
-concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces,
-                                     std::span<const PointForce> points, ContactProblem& problem,
-                                     const ToolRadii& radii, const ContactParameters& parameters,
-                                     const BladeSweep& sweep) {
+concept HooksOnlyPrefetch = requires(T& tissue, std::span<const VertexForce> forces, std::span<const PointForce> points,
+                                     ContactProblem& problem, const ToolRadii& radii,
+                                     const ContactParameters& parameters, const BladeSweep& sweep) {
   { tissue.begin_tick() } -> std::same_as<NoHook>;
   { tissue.end_tick(forces, points) } -> std::same_as<NoHook>;
   { tissue.updates() } -> std::same_as<NoHook>;
@@ -64,7 +63,7 @@ class TissueGroup : public StillTissue {
   double compliance_bound(int j) const noexcept;
   std::uint64_t compliance_revision() const noexcept;
   double compliance_floor() const noexcept { return floor_; }
-  Matrix3 vertex_rotation(int v) const noexcept;
+  Matrix3 half_space_map(int v) const noexcept;
   const Eigen::Isometry3d& to_world() const noexcept { return world_; }
 
  private:

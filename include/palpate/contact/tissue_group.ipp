@@ -184,9 +184,9 @@ PALPATE_INLINE Vector3 TissueGroup::displacement_of(int i, std::span<const Verte
     if (is_own(f)) u.noalias() += compliance(i, f.vertex) * f.force.in_model_axes();
   return u;
 }
-PALPATE_INLINE Matrix3 TissueGroup::vertex_rotation(int v) const noexcept {
+PALPATE_INLINE Matrix3 TissueGroup::half_space_map(int v) const noexcept {
   const Member& m = member_of(v);
-  const Matrix3 own = m.tissue.vertex_rotation(v - m.first);
+  const Matrix3 own = m.tissue.half_space_map(v - m.first);
   return m.in_place ? own : Matrix3(rotation_of(m.place) * own);
 }
 PALPATE_INLINE double TissueGroup::compliance_bound(int j) const noexcept {

@@ -33,7 +33,7 @@ struct TissueFunctions {
   void (*exchange_contacts)(void*, ContactProblem&) noexcept;
   void (*prepare_tools)(void*, const ToolRadii&, const ContactParameters&);
   bool (*try_cut)(void*, const BladeSweep&) noexcept;
-  void (*vertex_rotation)(const void*, int, Matrix3&) noexcept;
+  void (*half_space_map)(const void*, int, Matrix3&) noexcept;
   bool has_contact_materials;
   TissueClaim* (*claim)(void*) noexcept = nullptr;
   std::vector<std::string> (*notes)(const void*) = nullptr;
@@ -133,8 +133,8 @@ struct TissueCalls {
       };
     if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
-    if constexpr (calls<decltype(hooked().vertex_rotation(0))>)
-      f.vertex_rotation = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).vertex_rotation(v); };
+    if constexpr (calls<decltype(hooked().half_space_map(0))>)
+      f.half_space_map = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).half_space_map(v); };
     if constexpr (requires(T & t) { t.claim(); })
       f.claim = [](void* t) noexcept -> TissueClaim* { return &of(t).claim(); };
     if constexpr (requires(const T& t) { t.notes(); })
@@ -212,11 +212,11 @@ class TissueView {
   }
 
   /// Whether the surface rotates relative to the positions of its SubfacetCompliance.
-  bool rotates() const noexcept { return functions_->vertex_rotation != nullptr; }
-  Matrix3 vertex_rotation(int v) const noexcept {
+  bool rotates() const noexcept { return functions_->half_space_map != nullptr; }
+  Matrix3 half_space_map(int v) const noexcept {
     Matrix3 r;
     if (!rotates()) return Matrix3::Identity();
-    functions_->vertex_rotation(tissue_, v, r);
+    functions_->half_space_map(tissue_, v, r);
     return r;
   }
   /// The mean of those of a point's vertices.
@@ -255,10 +255,10 @@ class TissueView {
 };
 
 inline Matrix3 TissueView::rotation_at(const ContactSample& point) const noexcept {
-  const Matrix3 first = vertex_rotation(point.vertices[0]);
+  const Matrix3 first = half_space_map(point.vertices[0]);
   Matrix3 mean = first;  // exact where all are equal
   for (std::size_t a = 1; a < 3; ++a)
-    if (point.weights[a] > 0.0) mean += point.weights[a] * (vertex_rotation(point.vertices[a]) - first);
+    if (point.weights[a] > 0.0) mean += point.weights[a] * (half_space_map(point.vertices[a]) - first);
   return mean;
 }
 

@@ -186,7 +186,7 @@ class CuttableTissue : public ModelBase {
   double compliance_floor() const noexcept { return view().floor; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook end_tick(std::span<const VertexForce>, std::span<const PointForce>) noexcept { return {}; }
-  NoHook vertex_rotation(int) const noexcept { return {}; }
+  NoHook half_space_map(int) const noexcept { return {}; }
   NoHook updates() const noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
   void report_failed(bool failed) noexcept { served_.report_failed(failed); }

@@ -32,7 +32,7 @@ constexpr void explain_tissue() noexcept {
     PALPATE_HOOK(HasExchangeContacts, "exchange_contacts(ContactProblem&) noexcept -> void or NoHook");
     PALPATE_HOOK(HasPrepareTools, "prepare_tools(const ToolRadii&, const ContactParameters&) -> void or NoHook");
     PALPATE_HOOK(HasTryCut, "try_cut(const BladeSweep&) noexcept -> bool or NoHook");
-    PALPATE_HOOK(HasVertexRotation, "vertex_rotation(int) const noexcept -> Matrix3 or NoHook");
+    PALPATE_HOOK(HasHalfSpaceMap, "half_space_map(int) const noexcept -> Matrix3 or NoHook");
     PALPATE_HOOK(HasWorkHooks,
                  "background_work() -> BackgroundStep or NoHook, report_slow(bool) or report_failed(bool), both "
                  "noexcept -> void or NoHook");

@@ -66,9 +66,9 @@ PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView
   if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
-  const double own = workspace.trace();
   if (tissue.rotates())
     workspace = (compliance_.rotation(c.slot) * workspace * compliance_.rotation(other.slot).transpose()).eval();
+  const double own = workspace.trace();
   workspace += compliance;
   if (i == j) remaining_[at(i)] = workspace.trace() / own;
   return workspace;

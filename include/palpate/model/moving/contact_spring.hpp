@@ -11,21 +11,22 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Maximum number of springs of a motion.
-inline constexpr std::size_t most_springs = 640;
+inline constexpr std::size_t most_springs = 1024;
 
-/// A spring that pushes a point of the surface along a direction and never pulls it.
+/// A spring that pushes a point of the surface along a direction, and pulls it only where a tool holds it.
 struct ContactSpring {
   std::array<NodeId, 3> nodes{};     ///< of the point's facet
   std::array<double, 3> weights{};   ///< of the point
   Vector3 direction{0.0, 0.0, 1.0};  ///< of the push, unit
-  double reach = 0.0;                ///< displacement along `direction` from which on there is no force [m]
+  double reach = 0.0;                ///< displacement along `direction` from which on there is no push [m]
   double stiffness = 1.0;            ///< [N/m]
+  bool pulls = false;
 
   /// Force along `direction` at displacements u, 3 per node [N].
   double push(const VectorX& u) const noexcept {
     double moved = 0.0;
     for (std::size_t a = 0; a < 3; ++a) moved += weights[a] * direction.dot(node_vector(u, Index{nodes[a]}));
-    return stiffness * std::max(0.0, reach - moved);
+    return stiffness * (pulls ? reach - moved : std::max(0.0, reach - moved));
   }
   /// Energy at displacements u [J].
   double energy(const VectorX& u) const noexcept {
@@ -40,7 +41,7 @@ inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& 
   for (const ContactSpring& s : springs) {
     const double push = s.push(u);
     for (std::size_t a = 0; a < 3; ++a) add_node_vector(force, Index{s.nodes[a]}, s.weights[a] * push * s.direction);
-    energy += 0.5 * push * push / s.stiffness;
+    energy += s.energy(u);
   }
   return energy;
 }

@@ -153,6 +153,7 @@ class ImplicitDynamics {
   VectorX trial_, velocity_, acceleration_, force_, full_, other_, damping_force_, x_, residual_;
   VectorX kept_load_, step_load_, change_, start_;  // workspaces of corrections
   std::vector<ContactSpring> springs_;
+  bool springs_changed_ = false;  // since the last step or correction
   DeformationReport deformation_;
   bool stepped_ = false;     // the state is the end of step_
   bool factorised_ = false;  // tangent_ is that of this step

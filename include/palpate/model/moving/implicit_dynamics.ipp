@@ -57,6 +57,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   start_from_the_lower();
   if (supports_move()) predict();
   if (!move_supports()) return report;
+  springs_changed_ = false;
   report.newton = newton_.solve(*this, x_);
   if (!std::isfinite(evaluate(x_, residual_)) || !all_finite(velocity_)) return report;
   report.taken = true;
@@ -71,7 +72,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
 
 PALPATE_INLINE bool ImplicitDynamics::correct(const VectorX& more) noexcept {
   if (!stepped_) return false;
-  if (more.isZero(0.0)) return true;
+  if (more.isZero(0.0) && !std::exchange(springs_changed_, false)) return true;
   if (!factorised_ && !prepare_at(u_)) return false;
   body_.conditions.gather(u_, start_);
   kept_load_ = load_;
@@ -138,6 +139,8 @@ PALPATE_INLINE void ImplicitDynamics::set_load(const VectorX& load) {
 
 PALPATE_INLINE void ImplicitDynamics::set_springs(std::span<const ContactSpring> springs) noexcept {
   const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
+  springs_changed_ = springs_changed_ || !springs_.empty() || !springs.empty();
+  if (springs_.empty() != springs.empty()) factorised_ = false;  // springs that replace others are about as stiff
   springs_.assign(springs.begin(), springs.begin() + count);
 }
 
@@ -206,11 +209,11 @@ PALPATE_INLINE bool ImplicitDynamics::prepare_at(const VectorX& u) noexcept {
 
 PALPATE_INLINE void ImplicitDynamics::add_springs(const VectorX& u, BlockMatrix& k) const noexcept {
   for (const ContactSpring& s : springs_) {
-    if (!(s.push(u) > 0.0)) continue;
+    if (s.push(u) == 0.0) continue;
     const Matrix3 stiffness = s.stiffness * s.direction * s.direction.transpose();
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
-        if (s.nodes[b] <= s.nodes[a])
+        if (s.nodes[b] <= s.nodes[a] && s.weights[a] != 0.0 && s.weights[b] != 0.0)
           k.block(k.pattern().find(s.nodes[a], s.nodes[b])) += s.weights[a] * s.weights[b] * stiffness;
   }
 }

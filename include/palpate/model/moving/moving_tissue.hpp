@@ -130,7 +130,7 @@ class MovingTissue : public ModelBase {
     return views_.front().compliance.bound(j) + views_.front().secants.bound(static_cast<std::size_t>(j));
   }
   double compliance_floor() const noexcept { return views_.front().compliance.floor(); }
-  Matrix3 vertex_rotation(int v) const noexcept { return views_.front().half_space[static_cast<std::size_t>(v)]; }
+  Matrix3 half_space_map(int v) const noexcept { return views_.front().half_space[static_cast<std::size_t>(v)]; }
   NoHook prefetch(std::span<const int>) noexcept { return {}; }
   NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
   /// Takes the newest surface, and updates the description of loads that error messages contain; not while a session
@@ -195,7 +195,7 @@ class MovingTissue : public ModelBase {
     std::size_t count = 0;
     std::array<PointForce, most_points> point{};
     std::size_t points = 0;
-    const View* view = nullptr;        // of the tick; the thread that steps may read it until it publishes the next
+    const View* view = nullptr;        // of the tick; the thread that steps may read it in its next step
     VertexList<most_pressed> pressed;  // of the rows since the last surface, also of those without force
     VertexList<most_near> near;        // whose displacement was requested
     std::uint64_t number = 0;          // of the surface of the tick
@@ -237,8 +237,9 @@ class MovingTissue : public ModelBase {
     listed[vertex(v)] = round;
     into.item[into.count++] = v;
   }
-  /// Takes the newest forces of a tick. One before a reset may name vertices of cuts that the reset has dropped.
-  void take_forces() noexcept;
+  /// Takes the newest forces of a tick; whether there are new ones. One before a reset may name vertices of cuts that
+  /// the reset has dropped.
+  bool take_forces() noexcept;
   void start_secants();
   void list_every_vertex();
   std::span<const int> near_vertices() const noexcept;
@@ -270,8 +271,9 @@ class MovingTissue : public ModelBase {
   bool was_slit_ = false;                      // since the last step
   detail::SplitVertices split_;                // of the last change of the surface
   Forces used_;
-  ContactSprings springs_;  // of the forces used_; without them these are loads
-  bool has_springs_ = false;
+  ContactSprings springs_;      // of the newest forces; without them these are loads
+  bool has_springs_ = false;    // in the last step
+  bool takes_springs_ = false;  // whether the motion does
   SurfaceStretch stretch_;
   bool stretches_ = false;
   std::uint64_t steps_ = 0;

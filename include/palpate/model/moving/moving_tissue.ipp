@@ -65,7 +65,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   limits().require_memory(near_bytes, "the compliance near the contacts");
   triangles_ = touchable.triangles;
   if (motion_->is_quasi_static()) start_secants();
-  has_springs_ = motion_->set_springs({});
+  takes_springs_ = motion_->set_springs({});
   springs_ = ContactSprings(nodes_.size(), most_forces, most_points);
   if (stretches_) stretch_ = SurfaceStretch(rest_, triangles_);
   View view = make_view();
@@ -119,13 +119,13 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   const FlushDenormals flush;
   report_failed(false);
   if (!prepare_step()) return {};
-  take_forces();
+  const bool is_new = take_forces();
   full_.setZero();
-  const bool had_springs = !springs_.empty();
-  if (!had_springs) add(used_, -1.0, full_);
-  set_springs(pressing_.front());
-  if (springs_.empty()) add(pressing_.front(), 1.0, full_);
-  const bool same = !had_springs && springs_.empty() && full_.isZero(0.0);
+  if (!has_springs_) add(used_, -1.0, full_);
+  if (is_new || pressing_.front().number != changed_.number) set_springs(pressing_.front());
+  const bool had_springs = std::exchange(has_springs_, !springs_.empty());
+  if (!has_springs_) add(pressing_.front(), 1.0, full_);
+  const bool same = !had_springs && !has_springs_ && full_.isZero(0.0);
   const bool corrected = same || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
   used_ = pressing_.front();
@@ -155,26 +155,30 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   return done;
 }
 
-PALPATE_INLINE void MovingTissue::take_forces() noexcept {
-  pressing_.update();
+PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
+  const bool is_new = pressing_.update();
   Forces& given = pressing_.front();
-  if (given.number == changed_.number) return;
+  if (given.number == changed_.number) return is_new;
   const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
   detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
   detail::drop_items(given.pressed.item, given.pressed.count, is_gone);
   detail::drop_items(given.near.item, given.near.count, is_gone);
+  return is_new;
 }
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
 PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
   springs_.clear();
-  if (!has_springs_) return;
+  if (!takes_springs_) return;
   if (forces.points > 0 && forces.number == changed_.number) {
     const View& view = *forces.view;
     springs_.set(
         {forces.item.data(), forces.count}, {forces.point.data(), forces.points}, nodes_,
         [&](int v) { return Vector3(view.free[vertex(v)] - rest_[vertex(v)]); },
-        [&](int i, int j) { return evaluate(view, i, j); });
+        [&](int i, int j) {
+          const Matrix3* const ready = view.near.find(i, j);
+          return ready != nullptr ? *ready : evaluate(view, i, j);
+        });
   }
   motion_->set_springs(springs_.all());
 }
@@ -185,7 +189,7 @@ PALPATE_INLINE void MovingTissue::record_pair(const Forces& before, double error
   find_moved(moved_);
   const bool is_recorded = secants_.record({before.item.data(), before.count}, {used_.item.data(), used_.count},
                                            moved_before_, moved_, error);
-  found_stiffness_ = found_stiffness_ || is_recorded;
+  found_stiffness_ = found_stiffness_ || (is_recorded && motion_->is_static());
 }
 
 PALPATE_INLINE bool MovingTissue::presses_beside_slit() const noexcept {
@@ -273,6 +277,7 @@ PALPATE_INLINE void MovingTissue::restart() {
   pressing_.front() = {};  // of a session before the reset
   used_ = {};
   springs_.clear();
+  has_springs_ = false;
   motion_->set_springs({});
   compliance_.set_scale(1.0);
   ticked_ = {};
@@ -302,12 +307,13 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   mass_.swap(nodal_mass);
   split_ = detail::SplitVertices(surface.parent, nodes_.size(),
                                  [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; });
+  std::vector<Vector3> rest;
+  for (const NodeId node : surface.nodes) rest.push_back(positions[static_cast<std::size_t>(node)]);
+  if (stretches_) stretch_ = SurfaceStretch(rest, surface.surface.triangles());
+  springs_.resize(surface.nodes.size());
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
-  rest_.clear();
-  for (const NodeId node : nodes_) rest_.push_back(positions[static_cast<std::size_t>(node)]);
-  springs_.resize(nodes_.size());
-  if (stretches_) stretch_ = SurfaceStretch(rest_, surface.surface.triangles());
+  rest_.swap(rest);
   list_every_vertex();
   if (motion_->is_quasi_static()) start_secants();
   const std::uint64_t number = changed_.number + 1;

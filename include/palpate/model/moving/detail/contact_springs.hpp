@@ -30,9 +30,9 @@ class ContactSprings {
   bool empty() const noexcept { return springs_.empty(); }
   std::span<const ContactSpring> all() const noexcept { return springs_; }
 
-  /// Sets springs for the points' forces, whose sums at the vertices are `forces`, one per vertex. `moved(v)` is the
-  /// displacement of a vertex without forces, `compliance(i, j)` that per force, `nodes` those of the vertices. Without
-  /// springs where the sums do not fit. O(forces^2).
+  /// Sets springs for the forces of points on the vertices of `forces`, one per vertex. `moved(v)` is the displacement
+  /// of a vertex without forces, `compliance(i, j)` that per force, `nodes` those of the vertices. Without springs
+  /// where a point has another vertex. O(forces^2).
   template <class Moved, class Compliance>
   void set(std::span<const VertexForce> forces, std::span<const PointForce> points, const std::vector<NodeId>& nodes,
            const Moved& moved, const Compliance& compliance) noexcept {
@@ -43,19 +43,23 @@ class ContactSprings {
       yield_[k].setZero();
       for (std::size_t l = 0; l < forces.size(); ++l) {
         const Matrix3 c = compliance(forces[k].vertex, forces[l].vertex);
-        moved_[k] += c * forces[l].force.in_model_axes();
+        moved_[k] += c * sum_[l];
         yield_[k] += c * unit_[l];
       }
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(points[i].force.in_model_axes().squaredNorm() > 0.0)) continue;
-      double own = 0.0;
+      double own = 0.0, largest = 0.0;
       const Vector3 direction = points[i].force.in_model_axes().normalized();
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b)
-          if (const double weight = points[i].weights[a] * points[i].weights[b]; weight > 0.0)
-            own += weight * direction.dot(compliance(points[i].vertices[a], points[i].vertices[b]) * direction);
-      add(points[i], direction, own, nodes);
+          if (const double weight = points[i].weights[a] * points[i].weights[b]; weight > 0.0) {
+            const double along = direction.dot(compliance(points[i].vertices[a], points[i].vertices[b]) * direction);
+            own += weight * along;
+            if (a == b) largest = std::max(largest, along);
+          }
+      // Beside prescribed vertices a small part of the force is on a free one: not as stiff as that part alone.
+      add(points[i], direction, std::max(own, largest / 9.0), nodes);
     }
   }
   /// Sets the forces that `set` was given to those of the springs at displacements u of all nodes.
@@ -66,7 +70,7 @@ class ContactSprings {
   /// is unstable under dead loads; stiffer ones take more iterations of a step.
   static constexpr double stiffer = 3.0;
 
-  /// Numbers the vertices with forces and adds up the directions of their points' forces. False where a point has none.
+  /// Numbers the vertices with forces and adds up their points' forces and directions. False where a point has none.
   bool enter(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept;
   void add(const PointForce& point, const Vector3& direction, double own, const std::vector<NodeId>& nodes) noexcept;
   std::size_t slot(int vertex) const noexcept {
@@ -76,8 +80,8 @@ class ContactSprings {
   std::vector<ContactSpring> springs_;
   std::vector<std::array<int, 3>> forces_of_;  // per spring: the forces on its vertices
   std::vector<int> slot_;                      // per vertex: number of its force
-  std::vector<Vector3> moved_, unit_,
-      yield_;  // per force: displacement of its vertex, sum of directions, displacement by them
+  // Per force: sum of the points' forces and of their directions, displacement of its vertex by each.
+  std::vector<Vector3> sum_, unit_, moved_, yield_;
 };
 
 }}  // namespace palpate

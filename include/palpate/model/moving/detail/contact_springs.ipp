@@ -6,7 +6,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ContactSprings::ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points)
-    : slot_(vertices, -1), moved_(most_forces), unit_(most_forces), yield_(most_forces) {
+    : slot_(vertices, -1), sum_(most_forces), unit_(most_forces), moved_(most_forces), yield_(most_forces) {
   springs_.reserve(most_points);
   forces_of_.reserve(most_points);
 }
@@ -23,6 +23,7 @@ PALPATE_INLINE bool ContactSprings::enter(std::span<const VertexForce> forces,
   std::fill(slot_.begin(), slot_.end(), -1);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     slot_[static_cast<std::size_t>(forces[k].vertex)] = static_cast<int>(k);
+    sum_[k].setZero();
     unit_[k].setZero();
   }
   for (const PointForce& p : points) {
@@ -31,6 +32,7 @@ PALPATE_INLINE bool ContactSprings::enter(std::span<const VertexForce> forces,
     for (std::size_t a = 0; a < 3; ++a) {
       if (p.weights[a] == 0.0 || size == 0.0) continue;
       if (slot_[static_cast<std::size_t>(p.vertices[a])] < 0) return false;
+      sum_[slot(p.vertices[a])] += p.weights[a] * force;
       unit_[slot(p.vertices[a])] += p.weights[a] / size * force;
     }
   }
@@ -53,6 +55,7 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
   const double compliance = std::max(own, together);
   if (!(compliance > 0.0)) return;  // of prescribed vertices
   spring.direction = direction;
+  spring.pulls = point.grasped;
   spring.stiffness = stiffer / compliance;
   spring.reach = moved + point.force.in_model_axes().norm() / spring.stiffness;
   springs_.push_back(spring);
