@@ -100,7 +100,7 @@ TEST_CASE("a step of a bent body takes few iterations, far from rest and however
     largest = std::max(largest, motion->displacement().cwiseAbs().maxCoeff());
   }
   CHECK(largest > 0.4 * beam_size[0]);
-  CHECK(iterations <= 600);
+  CHECK(iterations <= 700);  // to a residual of 1e-3
 }
 
 TEST_CASE("quasi-Newton steps add no energy", "[model][quasi_newton][energy]") {
