@@ -40,7 +40,7 @@ struct ContactParameters {
   int capacity = 0;  ///< of contacts of all tools; of more, evenly spread ones are kept (degraded_model);
                      ///< 0: the default for the tools
 
-  /// The same with a capacity for this number of tools.
+  /// The same with a capacity for this number of tools, on tissue at large strain or not.
   ContactParameters for_tools(std::size_t tools, bool large_strain = false) const noexcept;
 };
 

@@ -45,8 +45,6 @@ PALPATE_INLINE void TissueGroup::build() {
   }
   surface_.set_materials(materials());
   surface_.set_subfacet(joined_subfacet());
-  surface_.set_large_strain(std::any_of(members_.begin(), members_.end(),
-                                        [](const Member& m) { return m.tissue.contact_surface().has_large_strain(); }));
   join_errors();
   own_.resize(moved_.size());
   add_shells();

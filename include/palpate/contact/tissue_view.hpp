@@ -199,8 +199,9 @@ class TissueView {
     look();
     return status;
   }
+  bool takes_forces() const noexcept { return functions_->end_tick != nullptr; }
   void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points) const noexcept {
-    if (functions_->end_tick != nullptr) functions_->end_tick(tissue_, forces, points);
+    if (takes_forces()) functions_->end_tick(tissue_, forces, points);
   }
   bool has_updates() const noexcept { return functions_->updates != nullptr; }
   std::uint64_t updates() const noexcept { return has_updates() ? functions_->updates(tissue_) : 0; }
@@ -211,16 +212,16 @@ class TissueView {
     look();
   }
 
-  /// Whether the surface rotates relative to the positions of its SubfacetCompliance.
-  bool rotates() const noexcept { return functions_->half_space_map != nullptr; }
+  /// Whether the surface moves relative to its SubfacetCompliance, so that it has maps.
+  bool has_half_space_map() const noexcept { return functions_->half_space_map != nullptr; }
   Matrix3 half_space_map(int v) const noexcept {
     Matrix3 r;
-    if (!rotates()) return Matrix3::Identity();
+    if (!has_half_space_map()) return Matrix3::Identity();
     functions_->half_space_map(tissue_, v, r);
     return r;
   }
   /// The mean of those of a point's vertices.
-  Matrix3 rotation_at(const ContactSample& point) const noexcept;
+  Matrix3 half_space_map_at(const ContactSample& point) const noexcept;
 
   /// Null for a tissue that several servos may use.
   TissueClaim* claim() const noexcept { return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr; }
@@ -254,7 +255,7 @@ class TissueView {
   const ContactSurface* surface_;
 };
 
-inline Matrix3 TissueView::rotation_at(const ContactSample& point) const noexcept {
+inline Matrix3 TissueView::half_space_map_at(const ContactSample& point) const noexcept {
   const Matrix3 first = half_space_map(point.vertices[0]);
   Matrix3 mean = first;  // exact where all are equal
   for (std::size_t a = 1; a < 3; ++a)

@@ -128,7 +128,7 @@ PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const Too
   if (place_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
   for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
-  tissue_.end_tick(problem_.vertex_forces(), problem_.point_forces());
+  if (tissue_.takes_forces()) tissue_.end_tick(problem_.vertex_forces(), problem_.point_forces());
   publish();
   return forces_;
 }

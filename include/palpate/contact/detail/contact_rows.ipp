@@ -66,8 +66,8 @@ PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView
   if (!compliance_.have_same_place(points, c.slot, other.slot)) return compliance;
   const double area = i == j ? c.area : std::sqrt(c.area * other.area);
   workspace = half_space_self_compliance(compliance_.half_space_point(c.slot), area);
-  if (tissue.rotates())
-    workspace = (compliance_.rotation(c.slot) * workspace * compliance_.rotation(other.slot).transpose()).eval();
+  if (tissue.has_half_space_map())
+    workspace = (compliance_.map(c.slot) * workspace * compliance_.map(other.slot).transpose()).eval();
   const double own = workspace.trace();
   workspace += compliance;
   if (i == j) remaining_[at(i)] = workspace.trace() / own;
@@ -297,7 +297,8 @@ PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidate
     for (std::size_t a = 0; a < 3; ++a)
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
     if (const HalfSpacePoint& point = compliance_.half_space_point(c.slot); point.is_known()) {
-      const Vector3 at_rest = tissue.rotates() ? Vector3(compliance_.rotation(c.slot).transpose() * total) : total;
+      const Vector3 at_rest =
+          tissue.has_half_space_map() ? Vector3(compliance_.map(c.slot).transpose() * total) : total;
       displacement.add_load({c.sample, point, c.area, row.point - row.rest, -at_rest}, points.samples()[c.sample]);
     }
   }

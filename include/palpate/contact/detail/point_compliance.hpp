@@ -36,8 +36,8 @@ class PointCompliance {
     return point_[at(p)].is_known() &&
            (p == q || (point_[at(q)].is_known() && is_same_place(point_[at(p)], point_[at(q)])));
   }
-  /// TissueView::rotation_at of that point.
-  const Matrix3& rotation(int slot) const noexcept { return rotation_[at(slot)]; }
+  /// TissueView::half_space_map_at of that point.
+  const Matrix3& map(int slot) const noexcept { return map_[at(slot)]; }
 
   /// The compliance between the points in two slots, p >= q.
   PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const Candidates& points, int p,
@@ -61,7 +61,7 @@ class PointCompliance {
   std::vector<std::uint64_t> known_;  // versions of the two points that the block belongs to
   std::vector<int> sample_;
   std::vector<HalfSpacePoint> point_;
-  std::vector<Matrix3> rotation_;
+  std::vector<Matrix3> map_;
   std::vector<std::uint64_t> version_, used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
   int next_ = 0;

@@ -12,7 +12,7 @@ PALPATE_INLINE PointCompliance::PointCompliance(int capacity)
       known_(block_.size(), 0),
       sample_(at(capacity), -1),
       point_(at(capacity)),
-      rotation_(at(capacity), Matrix3::Identity()),
+      map_(at(capacity), Matrix3::Identity()),
       version_(at(capacity), 0),
       used_(at(capacity), 0) {}
 
@@ -47,7 +47,7 @@ PALPATE_INLINE void PointCompliance::compute(const TissueView& tissue, const Can
   if (!point_[at(p)].is_known() || !point_[at(q)].is_known()) return;
   Matrix3 added = -points.subfacet()->shown(on_p, on_q);
   if (p != q) added += SubfacetCompliance::half_space(point_[at(p)], point_[at(q)]);
-  if (tissue.rotates()) added = (rotation(p) * added * rotation(q).transpose()).eval();
+  if (tissue.has_half_space_map()) added = (map(p) * added * map(q).transpose()).eval();
   block += added;
 }
 
@@ -56,7 +56,7 @@ PALPATE_INLINE int PointCompliance::take(const TissueView& tissue, const Candida
   while (used_[at(next_)] == rows_) next_ = next_ + 1 == capacity ? 0 : next_ + 1;
   sample_[at(next_)] = sample;
   point_[at(next_)] = points.half_space_point(sample);
-  if (tissue.rotates()) rotation_[at(next_)] = tissue.rotation_at(points.samples()[sample]);
+  if (tissue.has_half_space_map()) map_[at(next_)] = tissue.half_space_map_at(points.samples()[sample]);
   version_[at(next_)] = ++versions_ & 0xffffffffu;
   return next_;
 }

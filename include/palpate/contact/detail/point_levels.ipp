@@ -63,8 +63,8 @@ PALPATE_INLINE void PointLevels::divide() noexcept {
     if (radius_[t] > 0.0) share_[t] += rest / tools;
 }
 
-/// The number of points for which a level is chosen. A tool whose share is small gets half of it, so that there are
-/// rows for the points of the rim, and while points fade in.
+/// The number of points for which a level is chosen, more where the print has more vertices. A tool whose share is
+/// small gets half of it, so that there are rows for the points of the rim, and while points fade in.
 PALPATE_INLINE double PointLevels::wanted(std::size_t tool) const noexcept {
   constexpr double per_vertex = 1.2;
   const double points = std::max(static_cast<double>(limits_.wanted), per_vertex * vertices_[tool]);

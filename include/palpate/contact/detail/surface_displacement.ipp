@@ -102,7 +102,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
     if (sample.weights[a] != 0.0) mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
   if (load_count_ == 0) return mesh;
   const Vector3 added = dent(subfacet, sample, point, number);
-  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
+  return tissue.has_half_space_map() ? Vector3(mesh + tissue.half_space_map_at(sample) * added) : Vector3(mesh + added);
 }
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView& tissue,
@@ -114,7 +114,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView&
     mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
     if (load_count_ > 0) added -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
   }
-  return tissue.rotates() ? Vector3(mesh + tissue.rotation_at(sample) * added) : Vector3(mesh + added);
+  return tissue.has_half_space_map() ? Vector3(mesh + tissue.half_space_map_at(sample) * added) : Vector3(mesh + added);
 }
 
 /// Loads of less than a twentieth of the largest do not count for the directions: points at the rim of a deep print.

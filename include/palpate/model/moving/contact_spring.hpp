@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -20,7 +21,7 @@ struct ContactSpring {
   Vector3 direction{0.0, 0.0, 1.0};  ///< of the push, unit
   double reach = 0.0;                ///< displacement along `direction` from which on there is no push [m]
   double stiffness = 1.0;            ///< [N/m]
-  bool pulls = false;
+  bool pulls = false;                ///< also beyond `reach`
 
   /// Force along `direction` at displacements u, 3 per node [N].
   double push(const VectorX& u) const noexcept {
@@ -34,6 +35,12 @@ struct ContactSpring {
     return 0.5 * force * force / stiffness;
   }
 };
+
+/// Copies at most `most_springs` into a vector with room for them.
+inline void copy_springs(std::span<const ContactSpring> springs, std::vector<ContactSpring>& into) noexcept {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
+  into.assign(springs.begin(), springs.begin() + count);
+}
 
 /// Adds the forces of springs at displacements u to `force`, 3 entries per node [N]. Returns their energy [J].
 inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& u, VectorX& force) noexcept {

@@ -138,10 +138,9 @@ PALPATE_INLINE void ImplicitDynamics::set_load(const VectorX& load) {
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_springs(std::span<const ContactSpring> springs) noexcept {
-  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
   springs_changed_ = springs_changed_ || !springs_.empty() || !springs.empty();
   if (springs_.empty() != springs.empty()) factorised_ = false;  // springs that replace others are about as stiff
-  springs_.assign(springs.begin(), springs.begin() + count);
+  copy_springs(springs, springs_);
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_prescribed(const VectorX& values) {

@@ -75,7 +75,7 @@ class TissueMotion {
 struct PreparedMotion {
   std::unique_ptr<TissueMotion> motion;
   VectorX start;                         ///< displacement at rest [m]
-  bool large_strain = false;             ///< whether the material is stretched, not only rotated
+  bool large_strain = false;             ///< whether ticks follow the stretch of the surface (SurfaceStretch)
   bool accepts_initial_strains = false;  ///< whether loads of initial strains may be set
 };
 

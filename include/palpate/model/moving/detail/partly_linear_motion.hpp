@@ -56,8 +56,8 @@ class PartlyLinearMotion final : public TissueMotion {
   FarDisplacement far_displacement_;
   VectorX u_, v_, load_;  // of all nodes
   VectorX near_vector_, far_vector_;
-  VectorX kept_moved_, extended_;  // for `complete`
-  std::vector<ContactSpring> springs_;   // by nodes of the near part
+  VectorX kept_moved_, extended_;       // for `complete`
+  std::vector<ContactSpring> springs_;  // by nodes of the near part
   bool stepped_ = false, far_changed_ = true;
 };
 

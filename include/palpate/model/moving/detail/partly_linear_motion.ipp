@@ -45,8 +45,7 @@ PALPATE_INLINE MotionStep PartlyLinearMotion::step(double h) noexcept {
 }
 
 PALPATE_INLINE bool PartlyLinearMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
-  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
-  springs_.assign(springs.begin(), springs.begin() + count);
+  copy_springs(springs, springs_);
   for (ContactSpring& s : springs_)
     for (NodeId& node : s.nodes) node = parts_.near.local(node);
   return near_->set_springs(springs_);

@@ -394,8 +394,7 @@ PALPATE_INLINE double QuasiNewtonMotion::balance(VectorX& residual) noexcept {
 /// A correction of viscoelastic tissue is one iteration, from which springs would read forces that are not converged.
 PALPATE_INLINE bool QuasiNewtonMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
   if (forces_->has_history()) return false;
-  const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
-  springs_.assign(springs.begin(), springs.begin() + count);
+  copy_springs(springs, springs_);
   return true;
 }
 

@@ -22,8 +22,8 @@ class SurfaceStretch {
   /// `rest`: positions of the vertices. Allocates.
   SurfaceStretch(const std::vector<Vector3>& rest, std::vector<Triangle> triangles);
 
-  /// Sets the map of every vertex, for vertices at `positions` whose surroundings are rotated by `rotation`.
-  /// O(triangles), no allocation.
+  /// Sets the map of every vertex, for vertices at `positions` whose surroundings are rotated by `rotation`. Stretches
+  /// count from 1 to 3: compression changes nothing. O(triangles), no allocation.
   void find(const std::vector<Vector3>& positions, const std::vector<Matrix3>& rotation,
             std::vector<Matrix3>& map) noexcept;
 

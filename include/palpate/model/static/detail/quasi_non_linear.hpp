@@ -72,7 +72,9 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     return scale_ * c * scale_;
   }
   std::uint64_t compliance_revision() const noexcept { return revision_ + this->tissue().compliance_revision(); }
-  double compliance_bound(int j) const noexcept { return this->tissue().compliance_bound(j) / std::min(along_, across_); }
+  double compliance_bound(int j) const noexcept {
+    return this->tissue().compliance_bound(j) / std::min(along_, across_);
+  }
   double compliance_floor() const noexcept { return this->tissue().compliance_floor() / std::max(along_, across_); }
 
   /// Restores the state after construction.
