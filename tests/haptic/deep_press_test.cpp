@@ -8,6 +8,7 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
+#include <palpate/model/moving/implicit.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 #include <algorithm>
@@ -39,11 +40,12 @@ Mesh<Tet4> pad(int cells) {
 }
 
 /// A sphere of 10 mm on a pad of 60 x 60 x 20 mm, to a depth of its radius.
-template <class E, class Material>
-DeepPress press(const Mesh<E>& mesh, const Material& material) {
+template <class Solver = Implicit<QuasiNewton<float>>, class E, class Material>
+DeepPress press(const Mesh<E>& mesh, const Material& material,
+                const typename SolverTraits<Solver>::Parameters& parameters = {.inertia = false}) {
   const Vector3 middle(0.0307, 0.0311, size[2]);
-  HapticFEModel<E, Material, Implicit<QuasiNewton<float>>> tissue(
-      mesh, Scene().fix("z0").touch(where::sphere(middle, 0.022)), material, {}, {.inertia = false});
+  HapticFEModel<E, Material, Solver> tissue(mesh, Scene().fix("z0").touch(where::sphere(middle, 0.022)), material, {},
+                                            parameters);
   ServoOptions options;
   options.device.peak_force = options.device.continuous_force = 100.0;
   options.coupling_stiffness = infinity;
@@ -92,6 +94,14 @@ TEST_CASE("a sphere pressed by its radius has the force of another code", "[hapt
   }
   SECTION("quadratic tetrahedra") {
     check(press(promote<Tet10>(pad(6)), NeoHookeanLogarithmic{5e3, 0.45, 1000.0}), logarithmic, 0.025);
+  }
+  SECTION("with inertia") {
+    check(press(smoothed, NeoHookeanLogarithmic{5e3, 0.45, 1000.0}, {.mass_damping = 5.0}), logarithmic);
+  }
+  SECTION("Newton's method") {
+    check(press<Implicit<Newton<SparseCholesky>>>(promote<Tet10>(pad(6)), NeoHookeanLogarithmic{5e3, 0.45, 1000.0},
+                                                  {.mass_damping = 5.0}),
+          logarithmic, 0.025);
   }
 }
 

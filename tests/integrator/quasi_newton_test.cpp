@@ -68,6 +68,40 @@ TEST_CASE("an exact factor needs one iteration", "[integrator][quasi_newton]") {
   CHECK((problem.a * x - problem.b).norm() < 1e-12);
 }
 
+TEST_CASE("a response that is improved again and again is that of the second derivative",
+          "[integrator][quasi_newton]") {
+  FactorisedQuadratic problem;
+  problem.a(0, 1) = problem.a(1, 0) = 2.0;  // the factor is that of the diagonal
+  problem.a(1, 2) = problem.a(2, 1) = -20.0;
+  QuasiNewtonMethod method(3);
+  VectorX x = VectorX::Zero(3), d = VectorX::Zero(3), f = problem.b;
+  method.start(problem, x);
+  method.solve(problem, x, {});
+  const auto energy = [&] { return 0.5 * d.dot(problem.a * d) - f.dot(d); };
+  double last = 0.0;
+  for (int k = 0; k < 10; ++k) {
+    const testing::AllocationScope scope;
+    CHECK(method.improve(problem, x, f, d));
+    CHECK(scope.allocations() == 0);
+    CHECK(energy() <= last + 1e-9);
+    last = energy();
+  }
+  CHECK((problem.a * d - f).norm() < 1e-3 * f.norm());
+  f = Eigen::Vector3d(0.0, -1.0, 3.0);  // it follows another right-hand side
+  for (int k = 0; k < 10; ++k) method.improve(problem, x, f, d);
+  CHECK((problem.a * d - f).norm() < 1e-3 * f.norm());
+}
+
+TEST_CASE("there is no response where the second derivative is not positive", "[integrator][quasi_newton]") {
+  FactorisedQuadratic problem;
+  QuasiNewtonMethod method(3);
+  VectorX x = VectorX::Zero(3), d = VectorX::Zero(3);
+  method.start(problem, x);
+  problem.a = -problem.a;
+  CHECK_FALSE(method.improve(problem, x, problem.b, d));
+  CHECK(d.isZero(0.0));
+}
+
 TEST_CASE("Rosenbrock's function is minimised, monotonically, without allocation", "[integrator][quasi_newton]") {
   RosenbrockPairs problem;
   const Index n = 10;

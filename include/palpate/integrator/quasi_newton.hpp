@@ -60,7 +60,7 @@ concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
 class QuasiNewtonMethod {
  public:
   QuasiNewtonMethod() = default;
-  /// Allocates 2 `memory` + 5 vectors. Throws bad_argument unless `memory` is 1 to 100.
+  /// Allocates 2 `memory` + 7 vectors. Throws bad_argument unless `memory` is 1 to 100.
   explicit QuasiNewtonMethod(Index size, int memory = 6);
 
   /// Forgets all pairs. For a potential of another second derivative.
@@ -88,6 +88,13 @@ class QuasiNewtonMethod {
     find_direction(problem, r, d);
   }
 
+  /// Improves d towards A d = f, where A is the second derivative at x, at which a problem was solved last: d becomes
+  /// the best of d and the response to what is left (Rayleigh and Ritz). Called after every step, with the last d, it
+  /// follows A. Products with A are differences of the residual over a small part of d; they are pairs for later
+  /// directions, too. At most two evaluations and a solve. False, with d = 0, where A is not positive on these.
+  template <QuasiNewtonProblem P>
+  bool improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept;
+
   double potential() const noexcept { return potential_; }
   VectorX& residual() noexcept { return residual_; }
 
@@ -99,6 +106,9 @@ class QuasiNewtonMethod {
   double find_direction(P& problem) noexcept;
   template <class P>
   bool search(P& problem, VectorX& x, double slope, QuasiNewtonReport& report) noexcept;
+  /// y = A d at x.
+  template <class P>
+  bool multiply(P& problem, const VectorX& x, const VectorX& d, VectorX& y) noexcept;
   /// Stores the change of x and of the residual, unless the curvature is not positive, or their product below `least`.
   void remember(const VectorX& from, const VectorX& to, const VectorX& residual_there, double least) noexcept;
   Index newest(int back) const noexcept { return (next_ + memory_ - 1 - back) % memory_; }
@@ -107,6 +117,7 @@ class QuasiNewtonMethod {
   Eigen::MatrixXd steps_, changes_;  // one pair per column
   VectorX curvature_, weight_;       // 1 / (s . y), and a workspace
   VectorX residual_, direction_, trial_, trial_residual_, work_;
+  VectorX product_, other_product_;  // of A and vectors
   double potential_ = infinity;
 };
 
@@ -207,6 +218,40 @@ bool QuasiNewtonMethod::search(P& problem, VectorX& x, double slope, QuasiNewton
   }
   problem.evaluate(x, residual_);
   return false;
+}
+
+template <class P>
+bool QuasiNewtonMethod::multiply(P& problem, const VectorX& x, const VectorX& d, VectorX& y) noexcept {
+  constexpr double part = 0.01;
+  trial_ = x + part * d;
+  if (!(problem.evaluate(trial_, trial_residual_) < infinity)) return false;
+  remember(x, trial_, trial_residual_, 0.0);
+  y = (residual_ - trial_residual_) / part;
+  return true;
+}
+
+template <QuasiNewtonProblem P>
+bool QuasiNewtonMethod::improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept {
+  constexpr double exact = 1e-3;  // less would be lost to rounding of the differences
+  VectorX &of_d = product_, &other = direction_, &of_other = other_product_;
+  of_d.setZero();
+  bool known = d.isZero(0.0) || multiply(problem, x, d, of_d);
+  of_other = f - of_d;
+  const bool is_exact = of_other.norm() <= exact * f.norm();
+  find_direction(problem, of_other, other);
+  known = known && (is_exact || multiply(problem, x, other, of_other));
+  // The minimum of d.A d / 2 - d.f among the sums of both.
+  const double a = d.dot(of_d), b = 0.5 * (d.dot(of_other) + other.dot(of_d)), c = other.dot(of_other);
+  const double p = d.dot(f), q = other.dot(f), determinant = a * c - b * b;
+  if (known && a > 0.0 && !is_exact && determinant > 1e-9 * a * c)
+    d = ((c * p - b * q) * d + (a * q - b * p) * other) / determinant;
+  else if (known && a > 0.0)
+    d *= p / a;
+  else if (known && a == 0.0 && c > 0.0)
+    d = q / c * other;
+  else
+    d.setZero();
+  return !d.isZero(0.0);
 }
 
 }}  // namespace palpate

@@ -9,7 +9,14 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE QuasiNewtonMethod::QuasiNewtonMethod(Index size, int memory)
-    : memory_(memory), residual_(size), direction_(size), trial_(size), trial_residual_(size), work_(size) {
+    : memory_(memory),
+      residual_(size),
+      direction_(size),
+      trial_(size),
+      trial_residual_(size),
+      work_(size),
+      product_(size),
+      other_product_(size) {
   if (memory < 1 || memory > 100)
     raise(SetupErrorKind::bad_argument, "a memory of " + std::to_string(memory) + " pairs", "Give 1 to 100");
   steps_.setZero(size, memory);

@@ -23,11 +23,15 @@ struct ContactSpring {
   double stiffness = 1.0;            ///< [N/m]
   bool pulls = false;                ///< also beyond `reach`
 
+  /// Displacement of the point along `direction` at displacements u, 3 per node [m].
+  double moved(const VectorX& u) const noexcept {
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) sum += weights[a] * direction.dot(node_vector(u, Index{nodes[a]}));
+    return sum;
+  }
   /// Force along `direction` at displacements u, 3 per node [N].
   double push(const VectorX& u) const noexcept {
-    double moved = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) moved += weights[a] * direction.dot(node_vector(u, Index{nodes[a]}));
-    return stiffness * (pulls ? reach - moved : std::max(0.0, reach - moved));
+    return stiffness * (pulls ? reach - moved(u) : std::max(0.0, reach - moved(u)));
   }
   /// Energy at displacements u [J].
   double energy(const VectorX& u) const noexcept {

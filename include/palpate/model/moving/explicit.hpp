@@ -188,6 +188,7 @@ struct SolverTraits<Explicit<Scheme>> {
     made.accepts_initial_strains = requires {
       body.mesh;
     };
+    made.large_strain = !made.accepts_initial_strains;
     made.start = VectorX::Zero(3 * rest.mesh.node_count());
     if (p.settle) {
       Equilibrium statics(make_constrained_body(body, scene, limits), limits);

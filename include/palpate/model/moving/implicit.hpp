@@ -16,7 +16,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
 template <class Factor>
 struct Newton {
-  static_assert(std::same_as<Factor, SparseCholesky>, "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
+  static_assert(std::same_as<Factor, SparseCholesky>,
+                "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
 };
 
 /// Matrix-free conjugate gradients in scalar type S, with bounded work per step. For Tet4 and Corotational<...>. See
@@ -41,7 +42,9 @@ struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
 
   template <class Body>
   static PreparedMotion make_motion(Body body, const Scene& scene, const Parameters& p, const SetupLimits& limits) {
-    constexpr bool is_linear = requires { body.mesh; };
+    constexpr bool is_linear = requires {
+      body.mesh;
+    };
     return prepare(make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
   }
 
@@ -58,7 +61,7 @@ struct CorotatedParameters {
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
   BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
-  int precondition_every = 16;     ///< steps between two updates of the preconditioner
+  int precondition_every = 16;  ///< steps between two updates of the preconditioner
   bool check = true;  ///< compare the energy after a step with that before it; costs one more force evaluation
   int maximum_linearisations = 8;  ///< per step, when the check fails
 };
@@ -68,8 +71,8 @@ template <class Base, class S, class Preconditioner>
 class CorotatedTissueMotion final : public TissueMotion {
  public:
   using Motion = CorotatedMotion<Base, S, Preconditioner>;
-  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene, const CorotatedMotionOptions& options,
-                        const SetupLimits& limits)
+  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+                        const CorotatedMotionOptions& options, const SetupLimits& limits)
       : motion_(body, scene, options, limits) {}
 
   MotionStep step(double h) noexcept override {
@@ -109,13 +112,15 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
   static PreparedMotion make_motion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
                                     const Parameters& p, const SetupLimits& limits) {
     PreparedMotion made;
+    made.large_strain = true;
     made.start = VectorX::Zero(3 * body.rest.mesh.node_count());
     if (p.settle) {
       Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
-    const CorotatedMotionOptions options{p.scheme, p.mass_damping,       p.stiffness_damping, p.solve,
-                                         p.precondition_every, p.check, p.maximum_linearisations};
+    const CorotatedMotionOptions options{
+        p.scheme, p.mass_damping,          p.stiffness_damping, p.solve, p.precondition_every,
+        p.check,  p.maximum_linearisations};
     made.motion = std::make_unique<CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
     return made;
   }

@@ -11,6 +11,7 @@ PALPATE_INLINE PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::pr
                                                                                       const SetupLimits& limits) {
   PreparedMotion made;
   made.accepts_initial_strains = is_linear;
+  made.large_strain = !is_linear;
   made.start = VectorX::Zero(body.load.size());
   if (p.settle) {
     Equilibrium statics(std::move(body), limits);

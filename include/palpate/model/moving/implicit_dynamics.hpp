@@ -86,6 +86,9 @@ class ImplicitDynamics {
   /// Sets the values of the prescribed components at the end of the next step [m]. Throws as set_load.
   void set_prescribed(const VectorX& values);
 
+  /// Whether `respond` needs no factorisation: it has the tangent near the end of the last step.
+  bool is_factorised() const noexcept { return factorised_; }
+
   double kinetic_energy() noexcept;
   /// Stored energy [J]. For a viscoelastic body: the potential of its last step, which includes what dissipated in it.
   double elastic_energy() const noexcept { return body_.elastic->energy(u_); }

@@ -226,6 +226,9 @@ class MovingTissue : public ModelBase {
   void update_view(View& view) noexcept;
   /// Scales the compliance by what the last step has found.
   void follow_stiffness(const std::vector<Matrix3>& rotation) noexcept;
+  /// Compliance that the last step has found, relative to that of the ticks; 1 when it has found none.
+  double found_compliance(const std::vector<Matrix3>& rotation) noexcept;
+  double response_ratio(const std::vector<Matrix3>& rotation) noexcept;
   /// Sets springs for forces of a tick, or none.
   void set_springs(const Forces& forces) noexcept;
   /// Compliance of two vertices, rotated and corrected by the last steps [m/N].
@@ -258,7 +261,7 @@ class MovingTissue : public ModelBase {
   Scene loaded_;            // the last scene set; its gravity is not used
   VectorX applied_, load_;  // of that scene without and with gravity [N]
   VectorX full_;
-  VectorX response_;  // of a body that is cut
+  VectorX response_;  // of the last step to forces
   VertexCompliance compliance_;
   SecantCompliance secants_;
   bool found_stiffness_ = false;               // a pair of the last step

@@ -52,7 +52,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   loaded_ = scene();
   applied_ = load_of(loaded_, Vector3::Zero());
   load_ = start_load_ = load_of(scene(), gravity());
-  full_ = start_load_;
+  full_ = response_ = start_load_;
   rotations_ = NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
   motion_->set_load(load_);
   motion_->rest_at(start_);
@@ -438,10 +438,34 @@ PALPATE_INLINE void MovingTissue::find_moved(std::vector<Vector3>& moved) const 
 PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least = 0.2, followed = 0.3;  // part of the difference, in a step
   if (used_.count == 0) compliance_.set_scale(1.0);
-  if (!std::exchange(found_stiffness_, false)) return;
-  const double before = compliance_.scale();
-  const double found = std::clamp(before * secants_.work_ratio(compliance_, rotation), least, 1.0);
+  const double before = compliance_.scale(), found = std::clamp(before * found_compliance(rotation), least, 1.0);
   compliance_.set_scale(before + followed * (found - before));
+}
+
+PALPATE_INLINE double MovingTissue::found_compliance(const std::vector<Matrix3>& rotation) noexcept {
+  if (!motion_->is_quasi_static()) return springs_.empty() ? 1.0 : response_ratio(rotation);
+  return std::exchange(found_stiffness_, false) ? secants_.work_ratio(compliance_, rotation) : 1.0;
+}
+
+/// With inertia displacements change for other reasons than forces. The response of the last step to its forces shows
+/// the compliance of the tissue, where neither the tissue nor the springs take nearly all of them.
+PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& rotation) noexcept {
+  constexpr double least_part = 0.15, most_part = 0.6;  // of the work
+  full_.setZero();
+  add(used_, 1.0, full_);
+  if (!motion_->respond_here(full_, response_)) return 1.0;
+  std::array<VertexForce, most_forces> item = used_.item;
+  const std::span<VertexForce> borne(item.data(), used_.count);  // by the tissue
+  springs_.add_change(motion_->displacement(), response_, borne);
+  double work = 0.0, predicted = 0.0;
+  for (const VertexForce& f : borne) {
+    const Vector3& force = f.force.in_model_axes();
+    work += force.dot(node_vector(response_, nodes_[vertex(f)]));
+    for (const VertexForce& g : borne)
+      predicted += force.dot(compliance_.rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
+  }
+  const double part = work / full_.dot(response_);
+  return part >= least_part && part <= most_part && predicted > 0.0 ? work / predicted : 1.0;
 }
 
 PALPATE_INLINE void MovingTissue::update_view(View& view) noexcept {

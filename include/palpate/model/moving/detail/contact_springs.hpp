@@ -64,6 +64,8 @@ class ContactSprings {
   }
   /// Sets the forces that `set` was given to those of the springs at displacements u of all nodes.
   void read(const VectorX& u, std::span<VertexForce> forces) const noexcept;
+  /// Adds to these forces what the springs add to them when nodes at displacements u move by `more`.
+  void add_change(const VectorX& u, const VectorX& more, std::span<VertexForce> forces) const noexcept;
 
  private:
   /// Stiffness of all springs together, relative to that of the tissue under them. Softer ones do not hold a state that
@@ -73,6 +75,8 @@ class ContactSprings {
   /// Numbers the vertices with forces and adds up their points' forces and directions. False where a point has none.
   bool enter(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept;
   void add(const PointForce& point, const Vector3& direction, double own, const std::vector<NodeId>& nodes) noexcept;
+  /// Adds a force along the direction of spring i to those on its vertices.
+  void push(std::size_t i, double force, std::span<VertexForce> forces) const noexcept;
   std::size_t slot(int vertex) const noexcept {
     return static_cast<std::size_t>(slot_[static_cast<std::size_t>(vertex)]);
   }

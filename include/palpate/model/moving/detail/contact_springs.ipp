@@ -65,13 +65,21 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
 PALPATE_INLINE void ContactSprings::read(const VectorX& u, std::span<VertexForce> forces) const noexcept {
   if (springs_.empty()) return;
   for (VertexForce& f : forces) f.force = {};
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
-    const double push = springs_[i].push(u);
-    for (std::size_t a = 0; a < 3; ++a)
-      if (forces_of_[i][a] >= 0)
-        forces[static_cast<std::size_t>(forces_of_[i][a])].force +=
-            ModelVector(springs_[i].weights[a] * push * springs_[i].direction);
-  }
+  for (std::size_t i = 0; i < springs_.size(); ++i) push(i, springs_[i].push(u), forces);
+}
+
+PALPATE_INLINE void ContactSprings::add_change(const VectorX& u, const VectorX& more,
+                                               std::span<VertexForce> forces) const noexcept {
+  for (std::size_t i = 0; i < springs_.size(); ++i)
+    if (springs_[i].push(u) != 0.0) push(i, -springs_[i].stiffness * springs_[i].moved(more), forces);
+}
+
+PALPATE_INLINE void ContactSprings::push(std::size_t i, double force, std::span<VertexForce> forces) const noexcept {
+  const ContactSpring& spring = springs_[i];
+  for (std::size_t a = 0; a < 3; ++a)
+    if (forces_of_[i][a] >= 0)
+      forces[static_cast<std::size_t>(forces_of_[i][a])].force +=
+          ModelVector(spring.weights[a] * force * spring.direction);
 }
 
 }}  // namespace palpate

@@ -18,6 +18,7 @@ class ImplicitMotion final : public TissueMotion {
   bool set_springs(std::span<const ContactSpring> springs) noexcept override;
   bool prepare_response(double h) noexcept override;
   bool respond(const VectorX& forces, VectorX& u) noexcept override;
+  bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
   const VectorX& displacement() const noexcept override;
   const VectorX& velocity() const noexcept override;
   void rest_at(const VectorX& u) override;

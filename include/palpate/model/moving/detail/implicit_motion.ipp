@@ -33,6 +33,9 @@ PALPATE_INLINE bool ImplicitMotion::prepare_response(double h) noexcept {
 PALPATE_INLINE bool ImplicitMotion::respond(const VectorX& forces, VectorX& u) noexcept {
   return motion_.respond(forces, u);
 }
+PALPATE_INLINE bool ImplicitMotion::respond_here(const VectorX& forces, VectorX& u) noexcept {
+  return motion_.is_factorised() && motion_.respond(forces, u);
+}
 PALPATE_INLINE const VectorX& ImplicitMotion::displacement() const noexcept {
   return motion_.displacement();
 }

@@ -149,6 +149,7 @@ class QuasiNewtonMotion final : public TissueMotion {
   VectorX u_, v_, a_, load_, step_load_;
   VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
   VectorX x_, kept_load_, kept_free_, moved_;
+  VectorX response_;  // free dofs, of the last `respond_here`; with inertia
   DeformationReport deformation_;
   /// Forces at u_, while they are known.
   struct Known {

@@ -62,6 +62,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
       kept_load_(u_),
       kept_free_(x_),
       moved_(x_),
+      response_(VectorX::Zero(x_.size())),
       known_{u_, 0.0, {}, false},
       prescribed_(body_.conditions.prescribed) {
   parameters.require_usable();
@@ -224,10 +225,16 @@ PALPATE_INLINE bool QuasiNewtonMotion::respond_here(const VectorX& forces, Vecto
   if (!stepped_) return false;
   const FlushDenormals flush;
   body_.conditions.gather(forces, kept_free_);
-  method_.respond(*this, kept_free_, x_);
+  if (parameters_.inertia) {
+    body_.conditions.gather(u_, x_);
+    if (!method_.improve(*this, x_, kept_free_, response_)) return false;
+    moved_ = response_;
+  } else {
+    method_.respond(*this, kept_free_, moved_);
+  }
   u.setZero();
-  body_.conditions.scatter(x_, u);
-  return all_finite(x_);
+  body_.conditions.scatter(moved_, u);
+  return all_finite(moved_);
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::rest_at(const VectorX& u) {
@@ -249,6 +256,7 @@ PALPATE_INLINE void QuasiNewtonMotion::set_state(const VectorX& u, const VectorX
   stretched_ = false;
   known_.valid = false;
   method_.forget();
+  response_.setZero();
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::set_load(const VectorX& load) {
