@@ -136,8 +136,9 @@ Body<E> make_body(Mesh<E> mesh, const M& material) {
   return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});
 }
 
+inline void raise_element(SetupErrorKind kind, Index e, const char* what) {
+  raise_at(SetupIds::elements, e, kind, std::string("an element ") + what);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/body.ipp>
-#endif

@@ -81,8 +81,16 @@ concept FibreHyperelasticMaterial =
       { m.admits(f, fibre) } -> std::same_as<bool>;
     };
 
+inline SetupProblem parameter_problem(SetupErrorKind kind, const std::string& what, double value, double threshold,
+                                      const char* hint) {
+  SetupProblem p;
+  p.kind = kind;
+  p.what = what + " is " + number(value);
+  p.hint = hint;
+  p.value = value;
+  p.threshold = threshold;
+  return p;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/concepts/material.ipp>
-#endif

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/condensation.hpp>
 #include <palpate/linear/detail/any_solver.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <vector>
 
@@ -34,8 +35,25 @@ class Uncondensed {
   VectorX load_, answer_;
 };
 
+static_assert(StaticSystem<Uncondensed>);
+
+inline Uncondensed::Uncondensed(AnySolver solver, std::vector<Index> kept)
+    : solver_(std::move(solver)),
+      kept_(std::move(kept)),
+      load_(detail::zeros(solver_.size())),
+      answer_(solver_.size()) {}
+
+inline SolveReport Uncondensed::compliance_column(Index j, VectorX& column) noexcept {
+  const Index loaded = kept_[static_cast<std::size_t>(j)];
+  const double unit = 1.0;
+  if (solver_.solve_path_into({&loaded, 1}, {&unit, 1}, kept_, {column.data(), kept_.size()}))
+    return {true, 0, std::numeric_limits<double>::quiet_NaN()};
+  load_.data()[loaded] = 1.0;
+  const SolveReport report = solver_.solve_into(load_, answer_);
+  load_.data()[loaded] = 0.0;
+  for (std::size_t i = 0; i < kept_.size(); ++i) column.data()[i] = answer_.data()[kept_[i]];
+  return report;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/condensation/uncondensed.ipp>
-#endif

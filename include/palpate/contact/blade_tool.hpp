@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -19,8 +20,14 @@ struct BladeTool {
   void require_valid() const;
 };
 
+inline void BladeTool::require_valid() const {
+  for (const double value : {edge.norm(), cut_spacing})
+    if (!(value > 0.0 && value < infinity))
+      raise(SetupErrorKind::bad_argument, "the edge or cut spacing of a blade is " + number(value),
+            "Give positive SI values");
+  if (!(toughness >= 0.0 && toughness < infinity))
+    raise(SetupErrorKind::bad_argument, "the toughness is " + number(toughness), "Give zero or more, in J/m^2");
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/contact/blade_tool.ipp>
-#endif

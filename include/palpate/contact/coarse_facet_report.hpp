@@ -3,6 +3,7 @@
 
 #include <palpate/contact/contact_surface.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -19,8 +20,19 @@ struct CoarseFacetReport {
 /// Checks every triangle once. Allocates; for set-up.
 CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius);
 
+inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius) {
+  constexpr double coarse = 0.6;  // radius per length from which facets show the dent
+  CoarseFacetReport report;
+  report.radius = radius;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
+    const double length = surface.facet_length(t);
+    report.longest = std::max(report.longest, length);
+    if (!(radius < coarse * length)) continue;
+    report.triangles.push_back(t);
+    report.unknown_materials += surface.material(t).modulus == 0.0;
+  }
+  return report;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/contact/coarse_facet_report.ipp>
-#endif

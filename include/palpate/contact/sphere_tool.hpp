@@ -2,6 +2,9 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -13,8 +16,11 @@ struct SphereTool {
   void require_valid() const;
 };
 
+inline void SphereTool::require_valid() const {
+  if (!(std::isfinite(radius) && radius > 0.0))
+    raise(SetupErrorKind::bad_argument, "the radius of a sphere tool is " + number(radius),
+          "It must be finite and positive, in metres");
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/contact/sphere_tool.ipp>
-#endif

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <palpate/core/executor.hpp>
+#include <palpate/core/setup_error.hpp>
 
 #include <functional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -32,8 +35,27 @@ struct SetupLimits {
   void require_memory(double bytes, const char* what) const;
 };
 
+inline void SetupLimits::advance(std::string_view stage, double fraction) const {
+  if (!progress) return;
+  const bool goes_on = [&] {
+    const OriginalIds identity;  // the callback may set up another mesh, with other ids
+    const ScopedIdTranslation translation(identity);
+    return progress({stage, fraction});
+  }();
+  if (!goes_on) raise(SetupErrorKind::cancelled, "set-up was cancelled during " + std::string(stage));
+}
+
+inline void SetupLimits::require_memory(double bytes, const char* what) const {
+  if (bytes <= static_cast<double>(memory)) return;
+  SetupProblem p;
+  p.kind = SetupErrorKind::too_large;
+  p.what =
+      std::string(what) + " needs " + number(bytes) + " bytes, the limit is " + number(static_cast<double>(memory));
+  p.hint = "Touch fewer nodes, condense, or raise the memory limit";
+  p.value = bytes;
+  p.threshold = static_cast<double>(memory);
+  raise(std::move(p));
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/core/setup_options.ipp>
-#endif

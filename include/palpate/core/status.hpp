@@ -4,8 +4,10 @@
 #include <palpate/core/config.hpp>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <iosfwd>
+#include <ostream>
 #include <string_view>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -91,8 +93,35 @@ class StatusCounters {
 /// Prints every flag that was raised and how often, for example "Saturated 12 Ramping 33", or "ok". Not for the tick.
 std::ostream& operator<<(std::ostream& out, const StatusCounters& counters);
 
+inline std::ostream& operator<<(std::ostream& out, Status status) {
+  if (status.ok()) return out << "ok";
+  const char* between = "";
+  for (int bit = 0; bit < status_flag_count; ++bit) {
+    if ((status.bits() >> bit & 1u) == 0) continue;
+    out << between << status_flag_name(bit);
+    between = " ";
+  }
+  return out;
+}
+
+inline std::ostream& operator<<(std::ostream& out, const StatusCounters& counters) {
+  const char* between = "";
+  for (int bit = 0; bit < status_flag_count; ++bit) {
+    if (counters.at(bit) == 0) continue;
+    out << between << status_flag_name(bit) << ' ' << counters.at(bit);
+    between = " ";
+  }
+  return *between == 0 ? out << "ok" : out;
+}
+
+inline void StatusCounters::count(Status status) noexcept {
+  for (std::uint32_t bits = status.bits(); bits != 0; bits &= bits - 1)
+    ++counts_[static_cast<std::size_t>(std::countr_zero(bits))];
+}
+
+inline std::uint64_t StatusCounters::operator[](StatusFlag flag) const noexcept {
+  return counts_[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(flag)))];
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/core/status.ipp>
-#endif

@@ -39,8 +39,19 @@ struct Hex20 {
   static Eigen::Matrix<double, 20, 3> reference_nodes() noexcept;
 };
 
+static_assert(Element<Hex20>);
+
+inline Eigen::Matrix<double, 20, 1> Hex20::shape(const Vector3& xi) noexcept {
+  return serendipity::shape<20, 3>(reference_nodes(), xi);
+}
+
+inline Eigen::Matrix<double, 20, 3> Hex20::gradient(const Vector3& xi) noexcept {
+  return serendipity::gradient<20, 3>(reference_nodes(), xi);
+}
+
+inline Eigen::Matrix<double, 20, 3> Hex20::reference_nodes() noexcept {
+  return serendipity::with_middles<20, 3>(Hex8::reference_nodes(), edges);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/hex20.ipp>
-#endif

@@ -4,6 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 #include <palpate/quadrature/tensor.hpp>
 
 #include <array>
@@ -23,8 +24,25 @@ struct Quad4 {
   static Eigen::Matrix<double, 4, 2> reference_nodes() noexcept;
 };
 
+static_assert(TriangulatedFace<Quad4>);
+
+inline Eigen::Vector4d Quad4::shape(const Eigen::Vector2d& xi) noexcept {
+  const double u = xi[0], v = xi[1];
+  return {0.25 * ((1 - u) * (1 - v)), 0.25 * ((1 + u) * (1 - v)), 0.25 * ((1 + u) * (1 + v)),
+          0.25 * ((1 - u) * (1 + v))};
+}
+
+inline Eigen::Matrix<double, 4, 2> Quad4::gradient(const Eigen::Vector2d& xi) noexcept {
+  const double u = xi[0], v = xi[1];
+  return detail::matrix_of_rows<4, 2>({{0.25 * (v - 1), 0.25 * (u - 1)},
+                                       {0.25 * (1 - v), 0.25 * (-1 - u)},
+                                       {0.25 * (1 + v), 0.25 * (1 + u)},
+                                       {0.25 * (-1 - v), 0.25 * (1 - u)}});
+}
+
+inline Eigen::Matrix<double, 4, 2> Quad4::reference_nodes() noexcept {
+  return detail::matrix_of_rows<4, 2>({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/quad4.ipp>
-#endif

@@ -5,6 +5,7 @@
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/element/detail/serendipity.hpp>
+#include <palpate/element/quad4.hpp>
 #include <palpate/quadrature/tensor.hpp>
 
 #include <array>
@@ -24,8 +25,19 @@ struct Quad8 {
   static Eigen::Matrix<double, 8, 2> reference_nodes() noexcept;
 };
 
+static_assert(TriangulatedFace<Quad8>);
+
+inline Eigen::Matrix<double, 8, 1> Quad8::shape(const Eigen::Vector2d& xi) noexcept {
+  return serendipity::shape<8, 2>(reference_nodes(), xi);
+}
+
+inline Eigen::Matrix<double, 8, 2> Quad8::gradient(const Eigen::Vector2d& xi) noexcept {
+  return serendipity::gradient<8, 2>(reference_nodes(), xi);
+}
+
+inline Eigen::Matrix<double, 8, 2> Quad8::reference_nodes() noexcept {
+  return serendipity::with_middles<8, 2>(Quad4::reference_nodes(), edges);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/quad8.ipp>
-#endif

@@ -5,6 +5,7 @@
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 #include <palpate/element/tri3.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
 
@@ -32,8 +33,19 @@ struct Tet4 {
   static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept;
 };
 
+static_assert(Element<Tet4>);
+
+inline Eigen::Vector4d Tet4::shape(const Vector3& xi) noexcept {
+  return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
+}
+
+inline Eigen::Matrix<double, 4, 3> Tet4::gradient(const Vector3&) noexcept {
+  return detail::matrix_of_rows<4, 3>({{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
+inline Eigen::Matrix<double, 4, 3> Tet4::reference_nodes() noexcept {
+  return detail::matrix_of_rows<4, 3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/tet4.ipp>
-#endif

@@ -4,6 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/element/detail/matrix_of_rows.hpp>
 #include <palpate/quadrature/triangle.hpp>
 
 #include <array>
@@ -23,8 +24,15 @@ struct Tri3 {
   static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept;
 };
 
+static_assert(TriangulatedFace<Tri3>);
+
+inline Eigen::Matrix<double, 3, 2> Tri3::gradient(const Eigen::Vector2d&) noexcept {
+  return detail::matrix_of_rows<3, 2>({{-1, -1}, {1, 0}, {0, 1}});
+}
+
+inline Eigen::Matrix<double, 3, 2> Tri3::reference_nodes() noexcept {
+  return detail::matrix_of_rows<3, 2>({{0, 0}, {1, 0}, {0, 1}});
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/tri3.ipp>
-#endif

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/servo.hpp>
 #include <palpate/haptic/detail/loop_device.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
 
@@ -38,8 +39,11 @@ LoopReport run_haptic_loop(const std::tuple<Device&...>& devices, S& servo, cons
   return detail::run_loop(detail::loop_devices(devices), detail::loop_servo(servo), options);
 }
 
+inline LoopReport detail::run_loop(std::vector<LoopDevice> devices, const LoopServo& servo,
+                                           const LoopOptions& options) {
+  const double rate = rate_of(devices);
+  return HapticLoop(std::move(devices), servo, rate).run(options);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/haptic/run_haptic_loop.ipp>
-#endif

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/units.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -53,8 +55,14 @@ inline constexpr std::array<TissuePreset, 8> tissue_presets{{
 /// The preset with that name. Throws bad_argument, which lists all names.
 const TissuePreset& tissue_preset(std::string_view name);
 
+inline const TissuePreset& tissue_preset(std::string_view name) {
+  std::string known;
+  for (const TissuePreset& preset : tissue_presets) {
+    if (preset.name == name) return preset;
+    known += (known.empty() ? "'" : ", '") + std::string(preset.name) + "'";
+  }
+  raise(SetupErrorKind::bad_argument, "there is no preset for '" + std::string(name) + "'", "There are " + known);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/material/tissue_presets.ipp>
-#endif

@@ -11,6 +11,8 @@
 #include <palpate/post/detail/patch_recovery.hpp>
 #include <palpate/post/detail/point_stress.hpp>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -78,8 +80,36 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u) {
   return estimate_error(body, u, patch_recovery(body, u));
 }
 
+inline double ErrorEstimate::relative() const noexcept {
+  const double whole = std::hypot(error, energy_norm);
+  return whole > 0.0 ? error / whole : 0.0;
+}
+
+inline VectorX ErrorEstimate::size_ratio(double target, double most) const {
+  if (!(target > 0.0 && target < 1.0) || !(most >= 1.0))
+    raise(SetupErrorKind::bad_argument, "a mesh for a relative error of " + number(target),
+          "Give a target between 0 and 1");
+  const double allowed =
+      target * std::hypot(error, energy_norm) / std::sqrt(static_cast<double>(std::max<Index>(elements.size(), 1)));
+  VectorX ratio(elements.size());
+  for (Index e = 0; e < ratio.size(); ++e)
+    if (elements[e] == 0.0)
+      ratio[e] = most;
+    else
+      ratio[e] = std::clamp(std::pow(allowed / elements[e], 1.0 / order), 1.0 / most, most);  // NaN stays NaN
+  return ratio;
+}
+
+namespace detail {
+
+inline std::vector<Matrix6> compliances_of(const std::vector<Matrix6>& elasticities) {
+  std::vector<Matrix6> inverses;
+  inverses.reserve(elasticities.size());
+  for (const Matrix6& d : elasticities) inverses.push_back(d.ldlt().solve(Matrix6::Identity()));
+  return inverses;
+}
+
+}  // namespace detail
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/post/error_estimate.ipp>
-#endif

@@ -60,8 +60,10 @@ StressField stress_field(const Body<E>& body, const VectorX& u) {
   return field;
 }
 
+inline void von_mises(const StressColumns& stress, VectorX& equivalent) {
+  equivalent.resize(stress.cols());
+  for (Index i = 0; i < stress.cols(); ++i) equivalent[i] = voigt::von_mises(stress.col(i));
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/post/stress.ipp>
-#endif

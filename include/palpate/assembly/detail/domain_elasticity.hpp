@@ -56,8 +56,14 @@ class DomainElasticity {
   std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
 };
 
+inline const Matrix6& DomainElasticity::operator()(Index d, const StrainDomain& domain) const noexcept {
+  return elasticity_[by_domain_ ? static_cast<std::size_t>(d)
+                                : place(static_cast<std::size_t>(domain.region), domain.part)];
+}
+
+inline std::size_t DomainElasticity::place(std::size_t material, StrainPart part) noexcept {
+  return 2 * material + (part == StrainPart::volumetric ? 1 : 0);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/domain_elasticity.ipp>
-#endif

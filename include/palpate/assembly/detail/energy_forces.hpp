@@ -6,6 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -75,8 +76,16 @@ class TangentEnergyForces final : public EnergyForces {
   bool has_history_;
 };
 
+inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u,
+                                                     VectorX& f) noexcept {
+  Matrix3 turn;
+  turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  turn /= 3.0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    set_node_vector(u, static_cast<Index>(i), turn * positions[i] - positions[i]);
+  DeformationReport report;
+  return evaluate(u, f, report);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/energy_forces.ipp>
-#endif

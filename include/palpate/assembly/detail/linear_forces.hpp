@@ -29,8 +29,19 @@ class LinearForces final : public ElasticForces {
   mutable VectorX force_;
 };
 
+static_assert(ForceOperator<LinearForces>);
+
+inline double LinearForces::energy(const VectorX& u) const noexcept {
+  stiffness_.apply(u, force_);
+  return 0.5 * u.dot(force_);
+}
+
+inline DeformationReport LinearForces::force(const VectorX& u, VectorX& f) const noexcept {
+  stiffness_.apply(u, f);
+  DeformationReport report;
+  report.smallest_volume_ratio = 1.0;
+  return report;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/linear_forces.ipp>
-#endif

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <palpate/assembly/detail/node_lists.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 
+#include <limits>
 #include <span>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -22,8 +25,13 @@ class NodeElements {
   NodeLists lists_;
 };
 
+inline NodeElements::NodeElements(const MeshRef& mesh) {
+  if (mesh.element_count > std::numeric_limits<NodeId>::max())
+    raise(SetupErrorKind::count_too_large, "the mesh has " + std::to_string(mesh.element_count) + " elements");
+  lists_ = NodeLists(mesh.element_count, mesh.node_count, [&](Index e) {
+    return std::span(mesh.nodes_of(e), static_cast<std::size_t>(mesh.element.nodes));
+  });
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/node_elements.ipp>
-#endif

@@ -3,6 +3,8 @@
 
 #include <palpate/linear/sparse_cholesky.hpp>
 
+#include <utility>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// K split into kept and condensed dofs. With P_f = -K_kc K_cc^-1 the condensed system is P_u u_k = f_k + P_f f_c,
@@ -19,8 +21,14 @@ SchurComplement condense(const SparseLower& lower, const DofLayout& layout, cons
 /// The same without nodes and positions.
 SchurComplement condense(const SparseLower& lower, std::vector<Index> kept, const SetupLimits& limits);
 
+inline SchurComplement condense(const SparseLower& lower, const DofLayout& layout, const SetupLimits& limits) {
+  SchurComplement s;
+  s.interior = SparseCholesky::interior(CholeskyAnalysis(lower, layout, limits), lower, s.stiffness, limits);
+  return s;
+}
+inline SchurComplement condense(const SparseLower& lower, std::vector<Index> kept, const SetupLimits& limits) {
+  return condense(lower, DofLayout{{}, {}, std::move(kept)}, limits);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/condensation/detail/schur.ipp>
-#endif

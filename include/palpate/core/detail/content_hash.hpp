@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 #include <span>
 #include <string_view>
 
@@ -50,8 +51,36 @@ class ContentHash {
   std::array<std::uint64_t, lane_count> lanes_{first_prime, second_prime, ~first_prime, ~second_prime};
 };
 
+inline std::uint64_t ContentHash::digest() const noexcept {
+  std::uint64_t hash = 0;
+  for (const std::uint64_t lane : lanes_) hash = mixed(hash, lane);
+  hash ^= hash >> 29;  // each line is a bijection; together they make every output bit depend on every input bit
+  hash *= second_prime;
+  return hash ^ (hash >> 32);
+}
+
+inline void ContentHash::add_stripe(std::array<std::uint64_t, lane_count>& lanes,
+                                            const unsigned char* bytes) noexcept {
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    std::uint64_t value;
+    std::memcpy(&value, bytes + i * word, word);
+    lanes[i] = mixed(lanes[i], value);
+  }
+}
+
+inline void ContentHash::add_bytes(const void* data, std::size_t size) noexcept {
+  const auto* bytes = static_cast<const unsigned char*>(data);
+  std::array<std::uint64_t, lane_count> lanes = lanes_;
+  const std::size_t stripes = size / stripe, rest = size % stripe;
+  for (std::size_t s = 0; s < stripes; ++s) add_stripe(lanes, bytes + s * stripe);
+  if (rest > 0) {
+    std::array<unsigned char, stripe> last{};
+    std::memcpy(last.data(), bytes + stripes * stripe, rest);
+    add_stripe(lanes, last.data());
+  }
+  lanes[0] = mixed(lanes[0], static_cast<std::uint64_t>(size));
+  lanes_ = lanes;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/core/detail/content_hash.ipp>
-#endif

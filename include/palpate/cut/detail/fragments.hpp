@@ -5,6 +5,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
+#include <palpate/mesh/detail/rigid_modes.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
@@ -93,8 +94,15 @@ std::vector<Fragment> unsupported_fragments(const CutTopology<E>& topology) {
   return unheld;
 }
 
+inline int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
+                                   std::span<const std::uint8_t> constrained) {
+  std::vector<NodeId> supports;
+  for (const NodeId node : nodes)
+    if ((constrained[static_cast<std::size_t>(node)] & 7u) != 0) supports.push_back(node);
+  if (supports.empty()) return 6;
+  const detail::RigidFrame frame(positions, nodes, constrained);
+  return static_cast<int>(detail::free_motions(positions, supports, constrained, frame).size());
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/cut/detail/fragments.ipp>
-#endif

@@ -1,6 +1,7 @@
 // Real-time privileges of the thread that runs a loop.
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/loop_options.hpp>
 
 #include <string>
@@ -24,8 +25,20 @@ RealtimeGrant request_realtime(const LoopOptions& options);
 
 }  // namespace detail
 
+inline RealtimeGrant detail::request_realtime(const LoopOptions& options) {
+  RealtimeGrant grant;
+  grant.requested = options.real_time && options.paced;
+  const auto granted = [&](int error, const char* what) {
+    if (error != 0) grant.refusals += std::string(what) + ": " + platform::error_text(error) + ". ";
+    return error == 0;
+  };
+  if (options.cpu >= 0 && granted(platform::pin_this_thread(options.cpu), "pinning")) grant.cpu = options.cpu;
+  platform::ask_for_exact_sleeps();
+  if (!grant.requested) return grant;
+  grant.fifo = granted(platform::ask_for_realtime_scheduling(), platform::realtime_scheduling);
+  grant.memory_locked = granted(platform::lock_memory(), "locking memory");
+  return grant;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/haptic/detail/realtime_thread.ipp>
-#endif

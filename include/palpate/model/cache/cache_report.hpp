@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 
 #include <iosfwd>
 #include <ostream>
@@ -46,8 +47,14 @@ struct CacheReport {
 /// One line: read / written / rebuilt because ... / could not be written because ...
 std::ostream& operator<<(std::ostream& out, const CacheReport& r);
 
+inline std::ostream& operator<<(std::ostream& out, const CacheReport& r) {
+  const auto size = [&] { return " (" + number(static_cast<double>(r.bytes) / 1e6) + " MB)"; };
+  if (!r.supported) return out << "this solver has nothing to store in " << r.file;
+  if (r.read) return out << "read " << r.file << size();
+  if (r.mismatch != CacheMismatch::none) out << "rebuilt because " << r.why << "; ";
+  if (r.written) return out << "written " << r.file << size();
+  return out << r.file << " could not be written because " << r.problem;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/cache/cache_report.ipp>
-#endif

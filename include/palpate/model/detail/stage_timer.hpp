@@ -24,8 +24,14 @@ class StageTimer {
   std::chrono::steady_clock::time_point start_;
 };
 
+inline StageTimer::StageTimer(SetupReport& report, const char* stage)
+    : report_(&report), line_(report.seconds.size()), start_(std::chrono::steady_clock::now()) {
+  report.seconds.emplace_back(stage, 0.0);
+}
+
+inline StageTimer::~StageTimer() {
+  report_->seconds[line_].second = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/detail/stage_timer.ipp>
-#endif

@@ -1,7 +1,11 @@
 // The option with which a static model measures how far contact forces are in error because of the mesh.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/model/force_error_options.hpp>
+#include <palpate/model/static/detail/measure_force_error.hpp>
+
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -12,8 +16,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// with 1000 more nodes per place. Throws bad_argument for less than one place.
 ForceErrorOptions measured_force_error(int places = 3);
 
+inline ForceErrorOptions measured_force_error(int places) {
+  if (places < 1)
+    raise(SetupErrorKind::bad_argument, "the force error is to be measured at " + std::to_string(places) + " places",
+          "Give one or more; three are typical");
+  return {places, &measure_force_error, nullptr};
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/static/measured_force_error.ipp>
-#endif

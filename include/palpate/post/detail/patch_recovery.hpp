@@ -234,8 +234,17 @@ NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
   return detail::PatchRecovery<E>(body, u).recover();
 }
 
+inline Index NodalStress::column(Index node, int of_region) const noexcept {
+  for (Index k = first[static_cast<std::size_t>(node)]; k < first[static_cast<std::size_t>(node) + 1]; ++k)
+    if (region[static_cast<std::size_t>(k)] == of_region) return k;
+  return -1;
+}
+
+inline Vector6 NodalStress::at(Index node) const noexcept {
+  const Index k = first[static_cast<std::size_t>(node)];
+  if (k == first[static_cast<std::size_t>(node) + 1]) return Vector6::Zero();
+  return stress.col(k);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/post/detail/patch_recovery.ipp>
-#endif

@@ -3,7 +3,9 @@
 
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 #include <palpate/linear/bounded_conjugate_gradient.hpp>
 
@@ -33,8 +35,14 @@ struct CorotatedStep {
   DeformationReport deformation{};  ///< at the end; without the check at the predicted state
 };
 
+inline CorotatedMotionOptions valid(const CorotatedMotionOptions& o) {
+  require_damping(o.mass_damping, o.stiffness_damping);
+  if (o.solve.maximum_iterations < 1 || !(o.solve.tolerance >= 0.0 && o.solve.tolerance < 1.0) ||
+      o.precondition_every < 1 || o.maximum_linearisations < 1)
+    raise(SetupErrorKind::bad_argument, "options with which a step does no work",
+          "Give at least one of each, and a tolerance from 0 to less than 1");
+  return o;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/moving/detail/corotated_step.ipp>
-#endif

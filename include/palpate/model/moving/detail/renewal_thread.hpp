@@ -2,10 +2,12 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/realtime.hpp>
 
 #include <atomic>
 #include <functional>
 #include <thread>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -33,8 +35,35 @@ class RenewalThread {
   std::thread thread_;  // last: it uses all other members
 };
 
+inline RenewalThread::RenewalThread(std::function<void()> work) : work_(std::move(work)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+inline RenewalThread::~RenewalThread() {
+  state_.store(State::stopped, std::memory_order_release);
+  state_.notify_one();
+  thread_.join();
+}
+
+inline void RenewalThread::ask() noexcept {
+  state_.store(State::asked, std::memory_order_release);
+  state_.notify_one();
+}
+
+inline void RenewalThread::run() noexcept {
+  const FlushDenormals flush;
+  for (;;) {
+    const State state = state_.load(std::memory_order_acquire);
+    if (state == State::stopped) return;
+    if (state != State::asked) {
+      state_.wait(state, std::memory_order_acquire);
+      continue;
+    }
+    work_();
+    State expected = State::asked;  // unless stopped
+    state_.compare_exchange_strong(expected, State::finished, std::memory_order_acq_rel);
+  }
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/moving/detail/renewal_thread.ipp>
-#endif

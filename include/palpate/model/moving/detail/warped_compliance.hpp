@@ -7,6 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -64,8 +65,14 @@ class WarpedCompliance {
   double floor_ = 0.0;
 };
 
+inline void WarpedCompliance::find_bounds() {
+  bound_.assign(count_, 0.0);
+  for (std::size_t j = 0; j < count_; ++j) {
+    for (std::size_t i = 0; i < count_; ++i) bound_[j] = std::max(bound_[j], at_rest(i, j).norm());
+    floor_ = std::max(floor_, 1e-9 * bound_[j]);
+  }
+  if (floor_ == 0.0) floor_ = 1e-9;
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/moving/detail/warped_compliance.ipp>
-#endif

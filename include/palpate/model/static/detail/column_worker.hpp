@@ -7,7 +7,9 @@
 #include <palpate/model/static/detail/compliance_columns.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -48,8 +50,33 @@ class ColumnWorker {
   std::thread thread_;  // last: it uses all other members
 };
 
+template <std::floating_point Scalar>
+ColumnWorker<Scalar>::ColumnWorker(AnyStaticSystem system, ComplianceColumns<Scalar>& columns)
+    : system_(std::move(system)), columns_(&columns), column_(system_.kept()), thread_([this] { work(); }) {}
+
+template <std::floating_point Scalar>
+ColumnWorker<Scalar>::~ColumnWorker() {
+  stop_.store(true, std::memory_order_relaxed);
+  thread_.join();
+}
+
+template <std::floating_point Scalar>
+void ColumnWorker<Scalar>::work() noexcept {
+  ColumnOrder next;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    if (!orders_.pop(next)) {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+      continue;
+    }
+    next.converged = columns_->fill(system_, next.vertex, next.slot, column_);
+    while (!answers_.push(next) && !stop_.load(std::memory_order_relaxed)) std::this_thread::yield();
+  }
+}
+
+#if !PALPATE_HEADER_ONLY
+template class ColumnWorker<float>;
+template class ColumnWorker<double>;
+#endif
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/static/detail/column_worker.ipp>
-#endif

@@ -1,10 +1,17 @@
 // A linear tissue on a finer mesh, for measurements at set-up.
 #pragma once
 
+#include <palpate/assembly/assembled.hpp>
+#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
+#include <palpate/model/detail/element_body.hpp>
+#include <palpate/model/static/detail/make_stiffness.hpp>
+#include <palpate/model/static/detail/solver_recipe.hpp>
 #include <palpate/model/static/linear_tissue.hpp>
 
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -16,8 +23,21 @@ class ReferenceTissue : public LinearTissue<double> {
   ReferenceTissue(Mesh<Tet4> mesh, std::vector<Matrix6> elasticity, const Scene& scene, const SetupOptions& options);
 };
 
+inline ReferenceTissue::ReferenceTissue(Mesh<Tet4> mesh, std::vector<Matrix6> elasticity, const Scene& scene,
+                                                const SetupOptions& options)
+    : LinearTissue<double>(options) {
+  using E = Smoothed<Tet4>;
+  const std::size_t regions = elasticity.size();
+  AdmittedBody admitted;
+  admitted.node_map.resize(mesh.positions.size());
+  std::iota(admitted.node_map.begin(), admitted.node_map.end(), 0);
+  admitted.origin = Vector3::Zero();
+  Body<E> body{copy_mesh<E>(mesh), std::move(elasticity), std::vector<double>(regions, 0.0),
+               std::vector<Vector6>(regions, Vector6::Zero())};
+  admitted.body = std::make_unique<ElementBody<E>>(std::move(body));
+  set_up(scene, std::move(admitted), detail::make_stiffness<E, Assembled>, solver_recipe<Condensed<SelectiveInverse>>(),
+         options);
+}
+
 }}  // namespace palpate
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/static/detail/reference_tissue.ipp>
-#endif
