@@ -12,6 +12,7 @@
 #include <palpate/local/loads.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
+#include <palpate/testing/dense.hpp>
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/violation.hpp>
 
@@ -181,8 +182,23 @@ Violations same_stiffness_laws(const A& a, const B& b, double tolerance = 1e-13)
   return v;
 }
 
+inline VectorX random_vector(Random& random, Index n) {
+  VectorX v(n);
+  for (Index i = 0; i < n; ++i) v[i] = random.uniform(-1.0, 1.0);
+  return v;
+}
+
+inline Violations zero_mode_laws(const MatrixX& dense, Index rigid_motions) {
+  Violations v;
+  const VectorX lambda = symmetric_eigenvalues(dense);
+  const double rounding = 1e-13 * lambda[lambda.size() - 1] * std::sqrt(static_cast<double>(lambda.size()));
+  Index zero = 0;
+  for (Index i = 0; i < lambda.size(); ++i) zero += std::abs(lambda[i]) <= rounding ? 1 : 0;
+  expect_true(v, "exact zero modes", zero == rigid_motions,
+              std::to_string(zero) + " instead of " + std::to_string(rigid_motions));
+  expect_at_least(v, "no negative mode", lambda[0], -rounding);
+  return v;
+}
+
 }}}  // namespace palpate::testing
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/assembler_laws.ipp>
-#endif

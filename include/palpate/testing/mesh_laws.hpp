@@ -181,8 +181,9 @@ Violations mesh_laws(const M& mesh) {
   return v;
 }
 
+inline std::string element_name(Index e) {
+  return "element " + std::to_string(e);
+}
+
 }}}  // namespace palpate::testing
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/mesh_laws.ipp>
-#endif

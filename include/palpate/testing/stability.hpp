@@ -92,8 +92,17 @@ double largest_that(Holds holds, double low, double high, double tolerance = 0.0
 /// 2013; Colgate and Schenkel 1997 for d = 0).
 double stiffness_limit(double damping, double period, double delay);
 
+inline std::span<const GatedForce> VirtualWall::tick(std::span<const ToolState> tools) noexcept {
+  const ToolState& tool = tools.front();
+  const double depth = -tool.position[2];
+  const Vector3 wanted(0.0, 0.0, one_sided && depth < 0.0 ? 0.0 : stiffness * depth);
+  force = gate.apply(wanted, tool.time, tool.time, tool.valid, false);
+  return {&force, 1};
+}
+
+inline double stiffness_limit(double damping, double period, double delay) {
+  return damping / (0.5 * period + delay);
+}
+
 }}}  // namespace palpate::testing
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/stability.ipp>
-#endif

@@ -54,8 +54,21 @@ class VolumeWatch {
   VolumeLanes<S, N> lanes_;
 };
 
+inline void add_report(const DeformationReport& part, DeformationReport& all) noexcept {
+  if (part.smallest_volume_ratio < all.smallest_volume_ratio) {
+    all.smallest_volume_ratio = part.smallest_volume_ratio;
+    all.worst_element = part.worst_element;
+  }
+  all.inverted += part.inverted;
+  all.beyond_range += part.beyond_range;
+  all.admissible = all.admissible && part.admissible;
+}
+
+inline DeformationReport report_of(const std::vector<DeformationReport>& parts) noexcept {
+  DeformationReport all;
+  for (const DeformationReport& part : parts) add_report(part, all);
+  return all;
+}
+
 }}}  // namespace palpate::detail
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/volume_watch.ipp>
-#endif

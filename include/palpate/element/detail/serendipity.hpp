@@ -79,8 +79,13 @@ Table<Nodes, Dimension> with_middles(const Table<Nodes - static_cast<int>(Edges)
   return x;
 }
 
+inline double factor(double s, double x) noexcept {
+  return s == 0.0 ? 1.0 - x * x : 0.5 * (1.0 + s * x);
+}
+
+inline double factor_derivative(double s, double x) noexcept {
+  return s == 0.0 ? -2.0 * x : 0.5 * s;
+}
+
 }}}  // namespace palpate::serendipity
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/element/detail/serendipity.ipp>
-#endif

@@ -46,8 +46,39 @@ void need_mark(TextReader& in, std::string_view mark);
 /// Reads a line that contains only a count.
 Index read_count(TextReader& in, std::string_view what, Index bytes_each);
 
+inline const Type& read_type(const Numbers& in) {
+  const Index wanted = in.integer("an element type", 1, max_int);
+  const Type* type = find_type(wanted);
+  if (type == nullptr)
+    in.in.refuse(SetupErrorKind::unsupported, "a known Gmsh element type", {"'", wanted, "'"},
+                 "Mesh again with elements of first or second order");
+  return *type;
+}
+
+inline int used_tag(State& state, CellShape shape, int physical, int elementary) {
+  if (facts(shape).dimension == 3) {
+    state.has_physical = state.has_physical || physical != 0;
+    state.elementary.add(elementary);
+  }
+  return state.by_elementary ? elementary : physical;
+}
+
+inline int read_physical(const Numbers& in) {
+  const auto tag = static_cast<int>(in.integer("a physical tag", -max_int, max_int));
+  return tag < 0 ? -tag : tag;
+}
+
+PALPATE_COLD inline void need_mark(TextReader& in, std::string_view mark) {
+  in.need_line(mark);
+  if (in.line() != mark) in.refuse(SetupErrorKind::bad_file, mark, in_quotes(in.line()));
+}
+
+PALPATE_COLD inline Index read_count(TextReader& in, std::string_view what, Index bytes_each) {
+  in.need_line(what);
+  const Index count = in.count(what, bytes_each);
+  in.end_line(what);
+  return count;
+}
+
 }}}  // namespace palpate::PALPATE_ABI::io::gmsh
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/io/detail/gmsh_state.ipp>
-#endif

@@ -1,6 +1,7 @@
 // Large uninitialised blocks of doubles.
 #pragma once
 
+#include <palpate/core/platform.hpp>
 #include <palpate/core/types.hpp>
 
 #include <memory>
@@ -30,8 +31,12 @@ class BigArray {
   Index size_ = 0;
 };
 
+inline BigArray::BigArray(Index size) : size_(size) {
+  constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;
+  const std::size_t alignment = bytes() >= 2 * huge_page ? huge_page : line;
+  data_ = {static_cast<double*>(::operator new (bytes(), std::align_val_t{alignment})), AlignedDelete{alignment}};
+  if (alignment == huge_page) platform::prefer_huge_pages(data_.get(), bytes());
+}
+
 }}}  // namespace palpate::detail
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/linear/detail/big_array.ipp>
-#endif

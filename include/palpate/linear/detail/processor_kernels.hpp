@@ -1,7 +1,9 @@
 // The dense kernels of the solvers, chosen for the processor at run time.
 #pragma once
 
+#include <palpate/core/detail/for_processor.hpp>
 #include <palpate/linear/detail/kernel_types.hpp>
+#include <palpate/linear/detail/kernels_here.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -10,8 +12,13 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// as fast as with it. Kernels of different processors differ by rounding.
 const any_flags::Kernels& processor_kernels() noexcept;
 
+inline const any_flags::Kernels& processor_kernels() noexcept {
+#if defined(PALPATE_KERNELS_BY_PROCESSOR)
+  return for_processor(kernels_here, any_flags::kernels_avx2, any_flags::kernels_avx512);
+#else
+  return kernels_here;
+#endif
+}
+
 }}}  // namespace palpate::detail
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/linear/detail/processor_kernels.ipp>
-#endif
