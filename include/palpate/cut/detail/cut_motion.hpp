@@ -1,20 +1,136 @@
 // A quasi-Newton motion of a body under cuts.
 #pragma once
 
+#include <palpate/assembly/block_matrix.hpp>
+#include <palpate/assembly/detail/energy_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
-#include <palpate/cut/detail/cut_factor.hpp>
-#include <palpate/cut/detail/cut_forces.hpp>
+#include <palpate/assembly/smoothed_tetrahedra.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/element/smoothed.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/local/mass.hpp>
+#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/moving/detail/renewable_factor.hpp>
+#include <palpate/model/moving/detail/renewal_thread.hpp>
+#include <palpate/model/moving/detail/step_factor.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// A body after cuts, for its factor.
+struct CutBody {
+  DeformableBody body;                     ///< conditions, positions, lumped mass and pattern
+  std::function<BlockMatrix()> stiffness;  ///< at rest; called by the thread
+  VectorX nodal_mass;               ///< [kg]; the lumped mass has another distribution in elements of second order
+  std::vector<NodeId> copied_from;  ///< node from which a node was split, which has a smaller id; or itself
+};
+
+/// The factor A of an earlier body, extended to the nodes that cuts have copied since: S A^-1 S^T + D. S gives a copy
+/// the displacement of the node that it was split from; D is the inverse of the diagonal block of A on nodes with
+/// copies, for their relative displacement. A thread computes the factor of the newest body. `follow` and, once after
+/// it, `take_renewed` allocate.
+class CutFactor final : public StepFactor {
+ public:
+  /// `base` is the factor of the body before any cut.
+  explicit CutFactor(std::shared_ptr<RenewableFactor> base);
+
+  /// Continues on the body after a cut, whose nodes are those of the last one and new copies.
+  void follow(std::shared_ptr<const CutBody> body);
+  /// Returns to the body before any cut.
+  void restart();
+
+  bool set_mass(double mass) noexcept override;
+  void rotate(const VectorX& u, bool stretched = false) noexcept override;
+  void solve(const VectorX& r, VectorX& z) noexcept override;
+  /// Without the copies.
+  void apply(const VectorX& x, VectorX& y) noexcept override;
+  bool is_uneven() const noexcept override { return base_->is_uneven(); }
+  void take_renewed() noexcept override;
+  long renewals() const noexcept override { return renewals_; }
+
+ private:
+  void request();
+  /// Finds the node of the base of every node, and D.
+  void find_base_nodes();
+  // In the thread
+  void compute() noexcept;
+  std::shared_ptr<RenewableFactor> make() const;
+
+  std::shared_ptr<RenewableFactor> base_, whole_;  // the latter: before any cut
+  double mass_ = 0.0;
+  std::shared_ptr<const CutBody> newest_;  // null: before any cut
+  /// What the thread is asked for, and its result; used by the thread while it works.
+  struct Request {
+    std::shared_ptr<const CutBody> body;
+    double mass = 0.0;
+    bool wanted = false;  // false after a restart; not used by the thread
+    std::shared_ptr<RenewableFactor> made;
+  };
+  Request request_;
+  std::vector<NodeId> base_node_;
+  std::vector<NodeId> split_;      // nodes with a copy, and copies
+  std::vector<Matrix3> relative_;  // D, for each
+  VectorX base_r_, base_z_;
+  long renewals_ = 0;
+  RenewalThread thread_;  // last: it uses all other members
+};
+
+/// The forces of the elements that a cut leaves, evaluated again after every cut.
+template <Element E, HyperelasticMaterial M, class S>
+class CutForces {
+ public:
+  /// Whether elements have the ids of the body before any cut.
+  static constexpr bool keeps_ids = false;
+
+  /// Those after a cut; `rest` has the elements that are left. Throws as make_energy_forces.
+  CutForces after(const CutTopology<E>&, HyperelasticBody<E, M> rest, const SetupLimits& limits) const {
+    CutForces made;
+    made.made_ = detail::make_energy_forces<S>(std::move(rest), limits);
+    return made;
+  }
+  /// For a motion.
+  std::unique_ptr<EnergyForces> take() noexcept { return std::move(made_); }
+
+ private:
+  std::unique_ptr<EnergyForces> made_;
+};
+
+/// Smoothed tetrahedra: those before the cut, copied and updated. The owner of the forces must outlive it.
+template <HyperelasticMaterial M, class S>
+class CutForces<Smoothed<Tet4>, M, S> {
+ public:
+  static constexpr bool keeps_ids = true;
+  using Force = SmoothedTetrahedra<M, S>;
+  using Owner = BatchedEnergyForces<Force, S>;
+
+  CutForces after(const CutTopology<Smoothed<Tet4>>& topology, HyperelasticBody<Smoothed<Tet4>, M> rest,
+                  const SetupLimits& limits) const {
+    CutForces made;
+    if (used_ == nullptr) {
+      made.made_ = std::make_unique<Owner>(Force(rest, limits));
+    } else {
+      Force force = used_->force();
+      force.follow(topology.mesh(), [&](Index e) { return topology.state(e) != ElementState::supported; });
+      made.made_ = std::make_unique<Owner>(std::move(force));
+    }
+    made.used_ = made.made_.get();
+    return made;
+  }
+  std::unique_ptr<EnergyForces> take() noexcept { return std::move(made_); }
+
+ private:
+  std::unique_ptr<Owner> made_;
+  const Owner* used_ = nullptr;  // null before the first
+};
 
 /// A motion whose body follows cuts. Nodes keep their ids, and new ones follow.
 template <Element E>
@@ -209,3 +325,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/cut/detail/cut_motion.ipp>
+#endif

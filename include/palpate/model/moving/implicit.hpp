@@ -2,15 +2,39 @@
 #pragma once
 
 #include <palpate/model/moving/detail/corotated_motion.hpp>
-#include <palpate/model/moving/detail/implicit_motion.hpp>
 #include <palpate/model/moving/detail/settled.hpp>
+#include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/model/moving/moving_model.hpp>
+#include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/policies.hpp>
 
 #include <memory>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Wraps an ImplicitDynamics. A step whose iterations end early may leave a residual of a twentieth of the force.
+class ImplicitMotion final : public TissueMotion {
+ public:
+  static constexpr double tolerable_residual = 0.05;
+
+  ImplicitMotion(DeformableBody body, const DynamicsParameters& parameters, const SetupLimits& limits);
+
+  MotionStep step(double h) noexcept override;
+  bool correct(const VectorX& more) noexcept override;
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override;
+  bool prepare_response(double h) noexcept override;
+  bool respond(const VectorX& forces, VectorX& u) noexcept override;
+  bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
+  const VectorX& displacement() const noexcept override;
+  const VectorX& velocity() const noexcept override;
+  void rest_at(const VectorX& u) override;
+  void set_load(const VectorX& load) override;
+  void set_prescribed(const VectorX& values) override;
+
+ private:
+  ImplicitDynamics motion_;
+};
 
 /// Newton's method on the incremental potential of a step, with a factorisation in every iteration. Supports all
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
@@ -126,10 +150,9 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
   }
 };
 
-inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(DeformableBody body,
-                                                                                      bool is_linear,
-                                                                                      const Parameters& p,
-                                                                                      const SetupLimits& limits) {
+inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(DeformableBody body, bool is_linear,
+                                                                              const Parameters& p,
+                                                                              const SetupLimits& limits) {
   PreparedMotion made;
   made.accepts_initial_strains = is_linear;
   made.large_strain = !is_linear;
@@ -146,3 +169,6 @@ inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(De
 
 }}  // namespace palpate
 
+#if PALPATE_HEADER_ONLY
+#include <palpate/model/moving/implicit.ipp>
+#endif

@@ -6,10 +6,10 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/post/detail/patch_polynomial.hpp>
 #include <palpate/post/detail/point_stress.hpp>
 #include <palpate/quadrature/tensor.hpp>
 #include <palpate/quadrature/tetrahedron.hpp>
@@ -19,6 +19,46 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Coordinates that map a patch of elements of any aspect ratio to about a unit sphere around its centre.
+struct PatchFrame {
+  Vector3 centre = Vector3::Zero();
+  Matrix3 map = Matrix3::Identity();  ///< [1/m]
+
+  Vector3 operator()(const Vector3& x) const noexcept;
+};
+
+/// The frame of points: their mean, and the inverse of their Cholesky-factorised covariance.
+PatchFrame patch_frame(const std::vector<Vector3>& points);
+
+/// Least-squares fit of a polynomial of degree 1 or 2 to every stress component, points weighted by the inverse of
+/// their distance to the node. A constant is reproduced exactly; directions in which the points do not differ get zero
+/// slope.
+class PatchPolynomial {
+ public:
+  /// Fits to one stress per point (at least one point). `complete` requires `oversampling` points per term. O(points x
+  /// terms^2), allocates.
+  PatchPolynomial(int degree, const PatchFrame& frame, const Vector3& node, const std::vector<Vector3>& points,
+                  const StressColumns& stress, int oversampling);
+
+  /// Whether the points determine the polynomial, with the required oversampling.
+  bool complete() const noexcept { return complete_; }
+
+  Vector6 operator()(const Vector3& x) const noexcept;
+
+ private:
+  static constexpr int most_terms = 9;
+  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_terms, 1>;
+
+  Terms powers(const Vector3& x) const noexcept;
+
+  int terms_;  ///< without the constant
+  PatchFrame frame_;
+  Vector6 mean_;
+  Terms mean_powers_;
+  Eigen::Matrix<double, Eigen::Dynamic, 6, 0, most_terms, 6> slopes_;
+  bool complete_ = false;
+};
 
 /// Stress at the nodes [Pa], one column per node and adjacent region: the stress jumps between two materials, so a node
 /// on an interface has two columns.
@@ -248,3 +288,6 @@ inline Vector6 NodalStress::at(Index node) const noexcept {
 
 }}  // namespace palpate
 
+#if PALPATE_HEADER_ONLY
+#include <palpate/post/detail/patch_recovery.ipp>
+#endif

@@ -2,14 +2,79 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/moving/detail/warped_compliance.hpp>
+#include <palpate/model/detail/nodal_rotation.hpp>
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Displacement of touchable vertices within a step per force on another, computed in the settled state and rotated
+/// with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Stores 72 bytes per pair of
+/// vertices.
+class WarpedCompliance {
+ public:
+  WarpedCompliance() = default;
+  /// Computes the compliance of a motion in its current state for steps of h [s]: one `respond` per dof of `nodes`.
+  /// Throws too_large, not_positive_definite for a body without stiffness, not_converged when a response was not found.
+  template <class Motion>
+  WarpedCompliance(Motion& motion, double h, const std::vector<NodeId>& nodes, const NodalRotations& rotations,
+                   const SetupLimits& limits)
+      : count_(nodes.size()) {
+    limits.require_memory(static_cast<double>(count_) * static_cast<double>(count_) * sizeof(Matrix3),
+                          "the contact compliance");
+    rest_.resize(count_ * count_);
+    if (!motion.prepare_response(h)) raise(SetupErrorKind::not_positive_definite, "the body at rest has no stiffness");
+    std::vector<Matrix3> rotated(count_);
+    for (std::size_t i = 0; i < count_; ++i) rotated[i] = rotations(i, motion.displacement());
+    VectorX force = VectorX::Zero(motion.displacement().size()), u(force.size());
+    for (std::size_t j = 0; j < count_; ++j) {
+      if (j % 64 == 0) limits.advance("compliance", static_cast<double>(j) / static_cast<double>(count_));
+      for (int c = 0; c < 3; ++c) {
+        force[3 * Index{nodes[j]} + c] = 1.0;
+        if (!motion.respond(force, u))
+          raise_at(SetupIds::nodes, nodes[j], SetupErrorKind::not_converged, "the compliance of a node was not found",
+                   "Shorten the step, or choose another preconditioner");
+        force[3 * Index{nodes[j]} + c] = 0.0;
+        for (std::size_t i = 0; i < count_; ++i)
+          for (int d = 0; d < 3; ++d) rest_[i + count_ * j](d, c) = u[3 * Index{nodes[i]} + d];
+      }
+      for (std::size_t i = 0; i < count_; ++i)
+        rest_[i + count_ * j] = rotated[i].transpose() * rest_[i + count_ * j] * rotated[j];
+    }
+    find_bounds();
+  }
+
+  /// Compliance rotated back to the rest configuration [m/N].
+  const Matrix3& at_rest(std::size_t i, std::size_t j) const noexcept { return rest_[i + count_ * j]; }
+  /// See TissueModel.
+  double bound(int j) const noexcept { return bound_[static_cast<std::size_t>(j)]; }
+  double floor() const noexcept { return floor_; }
+  std::size_t bytes() const noexcept { return rest_.size() * sizeof(Matrix3); }
+
+ private:
+  void find_bounds();
+
+  std::size_t count_ = 0;
+  std::vector<Matrix3> rest_;  // of vertex i per force on j, at index i + count x j
+  std::vector<double> bound_;
+  double floor_ = 0.0;
+};
+
+inline void WarpedCompliance::find_bounds() {
+  bound_.assign(count_, 0.0);
+  for (std::size_t j = 0; j < count_; ++j) {
+    for (std::size_t i = 0; i < count_; ++i) bound_[j] = std::max(bound_[j], at_rest(i, j).norm());
+    floor_ = std::max(floor_, 1e-9 * bound_[j]);
+  }
+  if (floor_ == 0.0) floor_ = 1e-9;
+}
 
 /// A WarpedCompliance C0, and vertices that cuts have created or uncovered: each has the compliance of a similar
 /// vertex, and once more on its diagonal where several have the same, because they move apart. Beside a slit it is

@@ -1,8 +1,8 @@
-// Definitions of cut_factor.hpp.
+// Definitions of cut_motion.hpp.
 #pragma once
 
 #include <palpate/core/detail/attempt.hpp>
-#include <palpate/cut/detail/cut_factor.hpp>
+#include <palpate/cut/detail/cut_motion.hpp>
 
 #include <Eigen/LU>
 
@@ -105,5 +105,7 @@ PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
                                                 StiffnessAt(), SetupLimits{});
   return made->set_mass(request_.mass) ? made : nullptr;
 }
+
+
 
 }}  // namespace palpate

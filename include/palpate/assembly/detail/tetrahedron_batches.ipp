@@ -1,7 +1,7 @@
-// Definitions of element_blocks.hpp.
+// Definitions of tetrahedron_batches.hpp.
 #pragma once
 
-#include <palpate/assembly/detail/element_blocks.hpp>
+#include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/core/detail/box.hpp>
 
 #include <algorithm>
@@ -31,5 +31,7 @@ PALPATE_INLINE void bisect_elements(std::span<NodeId> elements, const std::vecto
   bisect_elements(elements.subspan(0, middle), centre, most, group, region, blocks);
   bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
 }
+
+
 
 }}}  // namespace palpate::detail

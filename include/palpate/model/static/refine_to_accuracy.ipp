@@ -1,10 +1,9 @@
-// Definitions of accuracy_search.hpp.
+// Definitions of refine_to_accuracy.hpp.
 #pragma once
-
-#include <palpate/model/static/detail/accuracy_search.hpp>
 
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/refine_near_touched.hpp>
+#include <palpate/model/static/refine_to_accuracy.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -99,5 +98,7 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const AccuracySearchR
   if (!r.reached()) out << "  not reached: " << r.why_not << '\n';
   return out;
 }
+
+
 
 }}  // namespace palpate

@@ -1,7 +1,7 @@
-// Definitions of resting_edges.hpp.
+// Definitions of swept_faces.hpp.
 #pragma once
 
-#include <palpate/cut/detail/resting_edges.hpp>
+#include <palpate/cut/detail/swept_faces.hpp>
 
 #include <cmath>
 #include <utility>
@@ -46,5 +46,7 @@ PALPATE_INLINE void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, Po
   }
   if (edges_.size() > most) edges_.erase(edges_.begin(), edges_.end() - most);
 }
+
+
 
 }}  // namespace palpate

@@ -1,7 +1,7 @@
-// Definitions of implicit_motion.hpp.
+// Definitions of implicit.hpp.
 #pragma once
 
-#include <palpate/model/moving/detail/implicit_motion.hpp>
+#include <palpate/model/moving/implicit.hpp>
 
 #include <utility>
 
@@ -51,5 +51,7 @@ PALPATE_INLINE void ImplicitMotion::set_load(const VectorX& load) {
 PALPATE_INLINE void ImplicitMotion::set_prescribed(const VectorX& values) {
   motion_.set_prescribed(values);
 }
+
+
 
 }}  // namespace palpate

@@ -1,7 +1,7 @@
-// Definitions of patch_polynomial.hpp.
+// Definitions of patch_recovery.hpp.
 #pragma once
 
-#include <palpate/post/detail/patch_polynomial.hpp>
+#include <palpate/post/detail/patch_recovery.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -74,5 +74,7 @@ PALPATE_INLINE PatchPolynomial::Terms PatchPolynomial::powers(const Vector3& x) 
   }
   return p;
 }
+
+
 
 }}  // namespace palpate

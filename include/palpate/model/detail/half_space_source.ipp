@@ -1,7 +1,7 @@
-// Definitions of boundary_nodes.hpp.
+// Definitions of half_space_source.hpp.
 #pragma once
 
-#include <palpate/model/detail/boundary_nodes.hpp>
+#include <palpate/model/detail/half_space_source.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -85,5 +85,7 @@ PALPATE_INLINE double BoundaryNodes::length(NodeId node) const noexcept {
       }
   return count > 0 ? sum / count : 0.0;
 }
+
+
 
 }}  // namespace palpate

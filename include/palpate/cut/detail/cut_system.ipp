@@ -1,8 +1,8 @@
-// Definitions of bordered_update.hpp.
+// Definitions of cut_system.hpp.
 #pragma once
 
-#include <palpate/cut/detail/bordered_update.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/cut/detail/cut_system.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -61,5 +61,7 @@ PALPATE_INLINE double BorderedUpdate::smallest_eigenvalue(const Eigen::LLT<Matri
   }
   return std::min(value, 1.0);
 }
+
+
 
 }}  // namespace palpate
