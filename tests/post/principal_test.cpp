@@ -1,6 +1,6 @@
 // Principal values and directions.
 #include <palpate/core/voigt.hpp>
-#include <palpate/post/detail/principal.hpp>
+#include <palpate/post/principal.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/LU>
