@@ -81,8 +81,10 @@ TEST_CASE("a response that is improved again and again is that of the second der
   double last = 0.0;
   for (int k = 0; k < 10; ++k) {
     const testing::AllocationScope scope;
-    CHECK(method.improve(problem, x, f, d));
-    CHECK(scope.allocations() == 0);
+    const bool improved = method.improve(problem, x, f, d);
+    const auto allocations = scope.allocations();
+    CHECK(improved);
+    CHECK(allocations == 0);
     CHECK(energy() <= last + 1e-9);
     last = energy();
   }
