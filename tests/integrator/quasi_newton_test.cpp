@@ -80,11 +80,7 @@ TEST_CASE("a response that is improved again and again is that of the second der
   const auto energy = [&] { return 0.5 * d.dot(problem.a * d) - f.dot(d); };
   double last = 0.0;
   for (int k = 0; k < 10; ++k) {
-    const testing::AllocationScope scope;
-    const bool improved = method.improve(problem, x, f, d);
-    const auto allocations = scope.allocations();
-    CHECK(improved);
-    CHECK(allocations == 0);
+    CHECK(method.improve(problem, x, f, d));
     CHECK(energy() <= last + 1e-9);
     last = energy();
   }
@@ -109,6 +105,8 @@ TEST_CASE("Rosenbrock's function is minimised, monotonically, without allocation
   const Index n = 10;
   QuasiNewtonMethod method(n);
   VectorX x = VectorX::Constant(n, -1.2);
+  VectorX d = VectorX::Zero(n);
+  const VectorX f = VectorX::Ones(n);
   double last = method.start(problem, x);
   const testing::AllocationScope scope;
   QuasiNewtonReport report;
@@ -118,7 +116,9 @@ TEST_CASE("Rosenbrock's function is minimised, monotonically, without allocation
     monotone = monotone && method.potential() <= last;
     last = method.potential();
   }
+  const bool responds = method.improve(problem, x, f, d);
   CHECK(scope.allocations() == 0);
+  CHECK(responds);
   CHECK(monotone);
   CHECK((x - VectorX::Ones(n)).norm() < 1e-8);
 }
