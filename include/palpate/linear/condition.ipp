@@ -70,10 +70,6 @@ inline double error_of_solve(const OperatorView& op, SolverView solver, const Ve
   return std::isfinite(error) ? error : infinity;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// |A^n x| / |A^(n-1) x| for a random x: a lower bound of |A|_2.
 template <class Apply>
 double norm_by_iteration(Index size, int steps, Apply apply) {

@@ -64,10 +64,6 @@ inline void SingleSweeps::solve(const double* b, double* x) noexcept {
   for (Index i = 0; i < size; ++i) x[i] = largest * static_cast<double>(values[tree_.place_of_dof[i]]);
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Eliminates one front after the other into `factor`.
 class FrontFactorisation {
  public:

@@ -161,10 +161,6 @@ PALPATE_INLINE FrontTree build_front_tree(const NodeGraph& g, const Supernodes& 
   return FrontTreeBuilder(g, s, lower).take();
 }
 
-}  // namespace detail
-
-namespace detail {
-
 inline std::uint64_t hash_of_pattern(const SparseLower& m) noexcept {
   ContentHash hash;
   hash.add(std::span<const Index>(m.outerIndexPtr(), static_cast<std::size_t>(m.cols()) + 1));

@@ -111,10 +111,6 @@ class LeafOrder {
   std::array<int, max_nodes> degree_{};
 };
 
-}  // namespace detail
-
-namespace detail {
-
 /// What the threads of a dissection share: every thread changes only the entries of its parts. The neighbours of a part
 /// outside it are in separators that were found before.
 struct Dissection {
