@@ -220,6 +220,37 @@ TEST_CASE("several materials and materials with directions are marked", "[half_s
   CHECK(block.table().marks(0).has(HalfSpaceMark::anisotropic));
 }
 
+TEST_CASE("a layer that is thinner than its facets is marked, whatever its number of elements", "[half_space]") {
+  // Three layers of elements to x_3 = 4.7, below facets of length 1.
+  Mesh<Tet4> mesh = jittered_block<Tet4>(width, depth, 0.0);
+  for (Vector3& x : mesh.positions)
+    if (x[2] > 1.5) x[2] = 4.7 + 0.1 * (x[2] - 2.0);
+  const double border = 4.7;
+  TouchedBlock<Tet4> block = block_of(std::move(mesh), 0.3);
+  const auto marked = [&] {
+    const ProjectedHalfSpace table = block.table();
+    int count = 0;
+    for (int v = 0; v < table.vertex_count(); ++v) count += table.marks(v).has(HalfSpaceMark::several_materials);
+    return count;
+  };
+  CHECK(marked() == 0);
+  block.body.elasticity.push_back(100.0 * block.body.elasticity[0]);
+  block.body.mesh.region_names.push_back("skin");
+  for (Index e = 0; e < block.body.mesh.element_count(); ++e)
+    block.body.mesh.regions.push_back(element_nodes<Tet4>(block.body.mesh, e).col(2).mean() > border ? 1 : 0);
+  block.body.density.push_back(1.0);
+  block.body.initial_strain.push_back(Vector6::Zero());
+  CHECK(marked() == block.table().vertex_count());
+}
+
+TEST_CASE("vertices that are constrained along the surface are marked", "[half_space]") {
+  TouchedBlock<Tet4> block = uneven_block<Tet4>(0.3);
+  const auto middle = static_cast<std::size_t>(block.touched[block.touched.size() / 2]);
+  CHECK_FALSE(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(HalfSpaceMark::near_support));
+  block.constrained[middle] = 1;
+  CHECK(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(HalfSpaceMark::near_support));
+}
+
 TEST_CASE("the projection of a half-space refuses lists of other sizes", "[half_space]") {
   TouchedBlock<Tet4> block = uneven_block<Tet4>(0.3);
   block.constrained.pop_back();

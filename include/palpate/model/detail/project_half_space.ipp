@@ -75,17 +75,30 @@ inline VertexMaterial mean_material(std::span<const NodeId> elements, std::span<
   return mean;
 }
 
-/// Whether all elements within two of a node are of one material.
+/// Whether all elements within two of a node, and those nearer than its longest edge, are of one material. A layer of
+/// flat elements may be thinner than its facets are long.
 inline bool is_uniform_near(NodeId node, const MeshRef& mesh, const NodeElements& around,
                             std::span<const int> material_of, std::span<const EquivalentMaterial> materials) {
   const auto material = [&](NodeId e) -> const EquivalentMaterial& {
     return materials[static_cast<std::size_t>(material_of[static_cast<std::size_t>(e)])];
   };
   const EquivalentMaterial& first = material(around.of(node)[0]);
-  for (const NodeId e : around.of(node))
-    for (int a = 0; a < mesh.element.nodes; ++a)
-      for (const NodeId other : around.of(mesh.nodes_of(e)[a]))
-        if (!first.is_like(material(other))) return false;
+  const auto distance = [&](NodeId other) {
+    const double *const x = mesh.position(node), *const y = mesh.position(other);
+    return std::hypot(y[0] - x[0], y[1] - x[1], y[2] - x[2]);
+  };
+  double longest = 0.0;
+  std::vector<NodeId> near{node};
+  for (std::size_t k = 0; k < near.size(); ++k)
+    for (const NodeId e : around.of(near[k])) {
+      if (!first.is_like(material(e))) return false;
+      for (int a = 0; a < mesh.element.nodes; ++a) {
+        const NodeId other = mesh.nodes_of(e)[a];
+        if (k == 0) longest = std::max(longest, distance(other));
+        if ((k == 0 || distance(other) <= longest) && std::ranges::find(near, other) == near.end())
+          near.push_back(other);
+      }
+    }
   return true;
 }
 
@@ -163,6 +176,7 @@ PALPATE_INLINE void HalfSpaceTable::place_vertices() {
     if (point.is_fixed) continue;
     point.root = HalfSpacePoint::root_of(material.shear_modulus);
     if (source_.boundary.is_sharp(node)) marks.set(HalfSpaceMark::sharp_edge);
+    if (source_.constrained[static_cast<std::size_t>(node)] != 0) marks.set(HalfSpaceMark::near_support);
   }
 }
 
