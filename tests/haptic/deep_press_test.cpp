@@ -3,6 +3,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>
@@ -80,6 +81,40 @@ void check(const DeepPress& found, const std::array<double, 4>& exact, double mo
   CHECK_FALSE(found.status.has(StatusFlag::lost_contact));
 }
 
+struct Rest {
+  Vector3 force = Vector3::Zero();  ///< [N]
+  double change = 0.0;              ///< of its size, relative to the largest
+};
+
+/// Presses a sphere by 6 mm in 0.3 s, drags it by 10 mm in 0.5 s and holds it; the last 0.3 s of 1.2 s.
+Rest rest_after_drag(double friction, bool inertia) {
+  HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<float>>> tissue(
+      copy_mesh<Smoothed<Tet4>>(pad(12)), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0}, {},
+      {.inertia = inertia, .mass_damping = 5.0});
+  ServoOptions options;
+  options.device.peak_force = options.device.continuous_force = 100.0;
+  options.coupling_stiffness = infinity;
+  options.contact.friction = friction;
+  HapticServo servo(tissue, SphereTool{.radius = radius}, options);
+  Rest rest;
+  double next = 0.0, least = infinity, most = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double time = 1e-3 * k;
+    for (; time >= next - 1e-9; next += tissue.step()) tissue.advance();
+    ToolState state;
+    state.position = Vector3(0.0257 + 0.02 * std::clamp(time - 0.3, 0.0, 0.5), 0.0311,
+                             size[2] + radius - 0.02 * std::min(time, 0.3));
+    state.time = state.now = time;
+    servo.tick(std::array{state});
+    if (k < 1700) continue;
+    rest.force = servo.contact_force();
+    least = std::min(least, rest.force.norm());
+    most = std::max(most, rest.force.norm());
+  }
+  rest.change = 1.0 - least / most;
+  return rest;
+}
+
 }  // namespace deep_press
 }  // namespace
 
@@ -110,4 +145,13 @@ TEST_CASE("deep presses on facets as long as the radius are flagged", "[haptic][
   const DeepPress found = press(copy_mesh<Smoothed<Tet4>>(pad(6)), NeoHookeanLogarithmic{5e3, 0.45, 1000.0});
   CHECK(found.status.has(StatusFlag::coarse_contact));
   CHECK(found.least >= 0.0);
+}
+
+TEST_CASE("a sphere that was dragged with friction comes to rest, with inertia as without", "[haptic][deep_press]") {
+  const double friction = GENERATE(0.3, 0.5);
+  const deep_press::Rest still = deep_press::rest_after_drag(friction, false);
+  const deep_press::Rest moving = deep_press::rest_after_drag(friction, true);
+  CHECK(still.change < 0.01);
+  CHECK(moving.change < 0.01);
+  CHECK((moving.force - still.force).norm() < 0.1 * still.force.norm());
 }

@@ -30,7 +30,7 @@ Vector3 at_tick(int v) {
 
 TEST_CASE("contact springs have the forces of the tick where the tick leaves the surface", "[model][contact_springs]") {
   ContactSprings springs(4, 8, 8);
-  springs.set(forces, points, nodes, moved, compliance);
+  springs.set(forces, points, false, nodes, moved, compliance);
   REQUIRE(springs.all().size() == 2);
   VectorX u = VectorX::Zero(30);
   for (int v = 0; v < 4; ++v) u.segment<3>(3 * (5 + v)) = at_tick(v);
@@ -53,7 +53,7 @@ TEST_CASE("a contact spring of a grasped point also pulls", "[model][contact_spr
   ContactSprings springs(4, 8, 8);
   const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}, true}};
   std::vector<VertexForce> force{{0, {0, 0, -2.0}}};
-  springs.set(force, one, nodes, moved, compliance);
+  springs.set(force, one, false, nodes, moved, compliance);
   VectorX u = VectorX::Zero(30);
   u[3 * 5 + 2] = -1.0;  // far along the force
   springs.read(u, force);
@@ -64,15 +64,30 @@ TEST_CASE("all contact springs together are three times as stiff as the tissue",
   ContactSprings springs(4, 8, 8);
   const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}}};
   const std::vector<VertexForce> force{{0, {0, 0, -2.0}}};
-  springs.set(force, one, nodes, moved, compliance);
+  springs.set(force, one, false, nodes, moved, compliance);
   REQUIRE(springs.all().size() == 1);
   CHECK_THAT(springs.all()[0].stiffness, WithinRel(3.0 / 1e-2, 1e-12));
 }
 
+TEST_CASE("with friction contact springs also hold points across their forces", "[model][contact_springs]") {
+  ContactSprings springs(4, 8, 8);
+  springs.set(forces, points, true, nodes, moved, compliance);
+  REQUIRE(springs.all().size() == 6);
+  VectorX u = VectorX::Zero(30);
+  for (int v = 0; v < 4; ++v) u.segment<3>(3 * (5 + v)) = at_tick(v);
+  std::vector<VertexForce> read = forces;
+  springs.read(u, read);
+  for (std::size_t k = 0; k < 3; ++k)
+    CHECK((read[k].force.in_model_axes() - forces[k].force.in_model_axes()).norm() < 1e-12);
+  for (int v = 0; v < 4; ++v) u[3 * (5 + v) + 1] += 1e-3;  // across both forces
+  springs.read(u, read);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(read[k].force.in_model_axes()[1] < -1e-3);
+}
+
 TEST_CASE("no contact springs where a point's vertex has no force, or there is no room", "[model][contact_springs]") {
   ContactSprings springs(4, 8, 8), small(4, 2, 8);
-  springs.set({forces.data(), 2}, points, nodes, moved, compliance);
+  springs.set({forces.data(), 2}, points, false, nodes, moved, compliance);
   CHECK(springs.empty());
-  small.set(forces, points, nodes, moved, compliance);
+  small.set(forces, points, false, nodes, moved, compliance);
   CHECK(small.empty());
 }

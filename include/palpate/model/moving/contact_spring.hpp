@@ -12,7 +12,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Maximum number of springs of a motion.
-inline constexpr std::size_t most_springs = 1024;
+inline constexpr std::size_t most_springs = 2048;
 
 /// A spring that pushes a point of the surface along a direction, and pulls it only where a tool holds it.
 struct ContactSpring {

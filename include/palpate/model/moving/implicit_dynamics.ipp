@@ -208,7 +208,7 @@ PALPATE_INLINE bool ImplicitDynamics::prepare_at(const VectorX& u) noexcept {
 
 PALPATE_INLINE void ImplicitDynamics::add_springs(const VectorX& u, BlockMatrix& k) const noexcept {
   for (const ContactSpring& s : springs_) {
-    if (s.push(u) == 0.0) continue;
+    if (!s.pulls && s.push(u) == 0.0) continue;
     const Matrix3 stiffness = s.stiffness * s.direction * s.direction.transpose();
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)

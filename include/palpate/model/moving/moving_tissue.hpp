@@ -277,6 +277,7 @@ class MovingTissue : public ModelBase {
   ContactSprings springs_;      // of the newest forces; without them these are loads
   bool has_springs_ = false;    // in the last step
   bool takes_springs_ = false;  // whether the motion does
+  bool has_friction_ = false;   // of the servo's contacts
   SurfaceStretch stretch_;
   bool stretches_ = false;
   std::uint64_t steps_ = 0;

@@ -168,12 +168,13 @@ PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
 PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
+  static_assert(ContactSprings::most_per_point * most_points <= most_springs);
   springs_.clear();
   if (!takes_springs_) return;
   if (forces.points > 0 && forces.number == changed_.number) {
     const View& view = *forces.view;
     springs_.set(
-        {forces.item.data(), forces.count}, {forces.point.data(), forces.points}, nodes_,
+        {forces.item.data(), forces.count}, {forces.point.data(), forces.points}, has_friction_, nodes_,
         [&](int v) { return Vector3(view.free[vertex(v)] - rest_[vertex(v)]); },
         [&](int i, int j) {
           const Matrix3* const ready = view.near.find(i, j);
@@ -339,8 +340,9 @@ PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> f
   return u;
 }
 
-PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters&) {
+PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactParameters& contact) {
   const std::scoped_lock lock(changes_);
+  has_friction_ = contact.friction > 0.0;
   take_surface();  // contact points are placed on it
   views_.front().surface.set_loads(loads_in_words(gravity(), other_loads()));
 }
@@ -443,12 +445,13 @@ PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& r
 }
 
 PALPATE_INLINE double MovingTissue::found_compliance(const std::vector<Matrix3>& rotation) noexcept {
-  if (!motion_->is_quasi_static()) return springs_.empty() ? 1.0 : response_ratio(rotation);
+  if (!motion_->is_quasi_static()) return springs_.empty() || has_friction_ ? 1.0 : response_ratio(rotation);
   return std::exchange(found_stiffness_, false) ? secants_.work_ratio(compliance_, rotation) : 1.0;
 }
 
 /// With inertia displacements change for other reasons than forces. The response of the last step to its forces shows
-/// the compliance of the tissue, where neither the tissue nor the springs take nearly all of them.
+/// the compliance of the tissue, where neither the tissue nor the springs take nearly all of them. That is the
+/// compliance along the forces: with friction ticks would take that across for as stiff, and sticking points come loose.
 PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least_part = 0.15, most_part = 0.6;  // of the work
   full_.setZero();

@@ -17,9 +17,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// ends near the equilibrium of the contact. With dead loads it would end in an equilibrium of the loads: beyond about
 /// half a radius that is another one, or unstable. When ticks and steps agree, forces and displacements do not depend
 /// on the stiffness of the springs (a Robin condition between the parts of a partitioned problem; Badia, Nobile and
-/// Vergara 2008). Only the constructor and `resize` allocate.
+/// Vergara 2008). Friction holds a point along the surface, too, by springs across its force: with dead loads across,
+/// sticking points would swing from step to step and come loose. Only the constructor and `resize` allocate.
 class ContactSprings {
  public:
+  static constexpr std::size_t most_per_point = 3;
+
   ContactSprings() = default;
   /// For a surface of `vertices`, and at most that many forces on vertices and points.
   ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points);
@@ -34,8 +37,8 @@ class ContactSprings {
   /// of a vertex without forces, `compliance(i, j)` that per force, `nodes` those of the vertices. Without springs
   /// where a point has another vertex. O(forces^2).
   template <class Moved, class Compliance>
-  void set(std::span<const VertexForce> forces, std::span<const PointForce> points, const std::vector<NodeId>& nodes,
-           const Moved& moved, const Compliance& compliance) noexcept {
+  void set(std::span<const VertexForce> forces, std::span<const PointForce> points, bool has_friction,
+           const std::vector<NodeId>& nodes, const Moved& moved, const Compliance& compliance) noexcept {
     clear();
     if (!enter(forces, points)) return;
     for (std::size_t k = 0; k < forces.size(); ++k) {
@@ -59,7 +62,7 @@ class ContactSprings {
             if (a == b) largest = std::max(largest, along);
           }
       // Beside prescribed vertices a small part of the force is on a free one: not as stiff as that part alone.
-      add(points[i], direction, std::max(own, largest / 9.0), nodes);
+      add(points[i], direction, std::max(own, largest / 9.0), has_friction, nodes);
     }
   }
   /// Sets the forces that `set` was given to those of the springs at displacements u of all nodes.
@@ -74,7 +77,8 @@ class ContactSprings {
 
   /// Numbers the vertices with forces and adds up their points' forces and directions. False where a point has none.
   bool enter(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept;
-  void add(const PointForce& point, const Vector3& direction, double own, const std::vector<NodeId>& nodes) noexcept;
+  void add(const PointForce& point, const Vector3& direction, double own, bool has_friction,
+           const std::vector<NodeId>& nodes) noexcept;
   /// Adds a force along the direction of spring i to those on its vertices.
   void push(std::size_t i, double force, std::span<VertexForce> forces) const noexcept;
   std::size_t slot(int vertex) const noexcept {

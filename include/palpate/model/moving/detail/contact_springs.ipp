@@ -3,12 +3,14 @@
 
 #include <palpate/model/moving/detail/contact_springs.hpp>
 
+#include <Eigen/Geometry>
+
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE ContactSprings::ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points)
     : slot_(vertices, -1), sum_(most_forces), unit_(most_forces), moved_(most_forces), yield_(most_forces) {
-  springs_.reserve(most_points);
-  forces_of_.reserve(most_points);
+  springs_.reserve(most_per_point * most_points);
+  forces_of_.reserve(most_per_point * most_points);
 }
 
 PALPATE_INLINE void ContactSprings::resize(std::size_t vertices) {
@@ -19,7 +21,7 @@ PALPATE_INLINE void ContactSprings::resize(std::size_t vertices) {
 PALPATE_INLINE bool ContactSprings::enter(std::span<const VertexForce> forces,
                                           std::span<const PointForce> points) noexcept {
   forces_of_.clear();
-  if (forces.size() > moved_.size() || points.size() > springs_.capacity()) return false;
+  if (forces.size() > moved_.size() || most_per_point * points.size() > springs_.capacity()) return false;
   std::fill(slot_.begin(), slot_.end(), -1);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     slot_[static_cast<std::size_t>(forces[k].vertex)] = static_cast<int>(k);
@@ -40,16 +42,17 @@ PALPATE_INLINE bool ContactSprings::enter(std::span<const VertexForce> forces,
 }
 
 PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& direction, double own,
-                                        const std::vector<NodeId>& nodes) noexcept {
+                                        bool has_friction, const std::vector<NodeId>& nodes) noexcept {
   ContactSpring spring;
   std::array<int, 3> of{-1, -1, -1};
-  double moved = 0.0, together = 0.0;
+  Vector3 moved = Vector3::Zero();
+  double together = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     spring.nodes[a] = nodes[static_cast<std::size_t>(point.vertices[a])];
     spring.weights[a] = point.weights[a];
     if (point.weights[a] == 0.0) continue;
     of[a] = static_cast<int>(slot(point.vertices[a]));
-    moved += point.weights[a] * direction.dot(moved_[slot(point.vertices[a])]);
+    moved += point.weights[a] * moved_[slot(point.vertices[a])];
     together += point.weights[a] * direction.dot(yield_[slot(point.vertices[a])]);
   }
   const double compliance = std::max(own, together);
@@ -57,9 +60,18 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
   spring.direction = direction;
   spring.pulls = point.grasped;
   spring.stiffness = stiffer / compliance;
-  spring.reach = moved + point.force.in_model_axes().norm() / spring.stiffness;
+  spring.reach = direction.dot(moved) + point.force.in_model_axes().norm() / spring.stiffness;
   springs_.push_back(spring);
   forces_of_.push_back(of);
+  if (!has_friction || point.grasped) return;
+  spring.pulls = true;
+  spring.direction = direction.unitOrthogonal();
+  for (int k = 0; k < 2; ++k) {
+    spring.reach = spring.direction.dot(moved);
+    springs_.push_back(spring);
+    forces_of_.push_back(of);
+    spring.direction = cross(direction, spring.direction);
+  }
 }
 
 PALPATE_INLINE void ContactSprings::read(const VectorX& u, std::span<VertexForce> forces) const noexcept {
@@ -71,7 +83,8 @@ PALPATE_INLINE void ContactSprings::read(const VectorX& u, std::span<VertexForce
 PALPATE_INLINE void ContactSprings::add_change(const VectorX& u, const VectorX& more,
                                                std::span<VertexForce> forces) const noexcept {
   for (std::size_t i = 0; i < springs_.size(); ++i)
-    if (springs_[i].push(u) != 0.0) push(i, -springs_[i].stiffness * springs_[i].moved(more), forces);
+    if (springs_[i].pulls || springs_[i].push(u) != 0.0)
+      push(i, -springs_[i].stiffness * springs_[i].moved(more), forces);
 }
 
 PALPATE_INLINE void ContactSprings::push(std::size_t i, double force, std::span<VertexForce> forces) const noexcept {
