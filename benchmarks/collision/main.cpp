@@ -11,8 +11,7 @@
 #include <cstdio>
 #include <set>
 
-namespace collision {
-namespace {
+namespace collision { namespace {
 
 constexpr double pi = 3.141592653589793, radius = 0.05;  // radius of the organ [m]
 int wrong = 0;

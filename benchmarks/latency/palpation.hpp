@@ -18,7 +18,8 @@ class Palpation {
  public:
   using Model = palpate::HapticFEModel<palpate::Tet4, palpate::LinearElastic, Policy>;
 
-  explicit Palpation(const Block& block, const palpate::SetupOptions& options = {.columns = palpate::ColumnFill::synchronous})
+  explicit Palpation(const Block& block,
+                     const palpate::SetupOptions& options = {.columns = palpate::ColumnFill::synchronous})
       : mesh_(make_mesh(block)),
         model_(mesh_, make_scene(mesh_, block), tissue, options),
         servo_(model_, palpate::SphereTool{radius}) {}

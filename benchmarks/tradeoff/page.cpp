@@ -90,8 +90,8 @@ void write_csv(const std::vector<Row>& rows, const std::string& path) {
       out << '"' << *text << "\",";
     out << (r.own_core ? 1 : 0) << ',' << r.nodes << ',' << r.kept_dofs;
     for (const double value :
-         {r.setup, r.bytes, r.p50, r.p99, r.worst, r.update_p99, r.update_period, r.force_small, r.force_large, r.in_motion,
-          r.moved_small, r.moved_large, r.volume_small, r.volume_large, r.drift, r.own_error})
+         {r.setup, r.bytes, r.p50, r.p99, r.worst, r.update_p99, r.update_period, r.force_small, r.force_large,
+          r.in_motion, r.moved_small, r.moved_large, r.volume_small, r.volume_large, r.drift, r.own_error})
       out << ',' << figure(value, "%.6g");
     out << ",\"" << r.verdict << "\",\"" << r.remark << "\"\n";
   }
@@ -149,7 +149,8 @@ void write_page(const Bench& bench, const std::vector<Row>& rows, double budget,
   }
   out << "<h2>Within " << three_digits(1e6 * budget) << " us</h2><pre>" << escaped(advice(rows, budget)) << "</pre>\n";
   write_table(out, rows);
-  out << "<p>Times are processor times of one thread. in motion: root mean square force error at 1 kHz while the spheres "
+  out << "<p>Times are processor times of one thread. in motion: root mean square force error at 1 kHz while the "
+         "spheres "
          "move, late ticks and updates included, relative to the largest force. moved: displacement error of all nodes "
          "of the given mesh. volume: error relative to the volume displaced by the spheres. energy: gain of a released "
          "body without damping. own check: residual of the method's own equations.</p></html>\n";

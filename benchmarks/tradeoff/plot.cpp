@@ -13,8 +13,8 @@ std::string hover(const Row& r) {
   return bench::escaped(r.name() + "\nset-up " + three_digits(1e3 * r.setup) + " ms, " + three_digits(1e-6 * r.bytes) +
                         " MB\ntick p50 " + three_digits(1e6 * r.p50) + " us, p99 " + three_digits(1e6 * r.p99) +
                         " us, worst " + three_digits(1e6 * r.worst) + " us\nforce error " + percent(r.force_small) +
-                        " % (small), " + percent(r.force_large) + " % (large), in motion " + percent(r.in_motion) + " %" +
-                        (r.verdict.empty() ? "" : "\n" + r.verdict) + (r.remark.empty() ? "" : "\n" + r.remark));
+                        " % (small), " + percent(r.force_large) + " % (large), in motion " + percent(r.in_motion) +
+                        " %" + (r.verdict.empty() ? "" : "\n" + r.verdict) + (r.remark.empty() ? "" : "\n" + r.remark));
 }
 
 /// Short label that distinguishes the rows of a front.

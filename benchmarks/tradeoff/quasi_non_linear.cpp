@@ -48,7 +48,8 @@ void add_quasi_non_linear(const Bench& bench, std::vector<Entry>& entries) {
     d.scalar = "double";
     d.allowed = 2e-2;
     d.paste =
-        "using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Stiffening<Condensed<SelectiveInverse>>>;   // with "
+        "using Model = HapticFEModel<Smoothed<Tet4>, LinearElastic, Stiffening<Condensed<SelectiveInverse>>>;   // "
+        "with "
         "{.axial = ...}, a StiffeningCurve measured on the tissue";
     entry.make = [&bench, mesh] { return std::make_unique<CotinContender>(bench, mesh); };
     entries.push_back(std::move(entry));

@@ -36,7 +36,8 @@ std::string summary(const Bench& bench, const std::vector<Row>& rows, double bud
       << " %.\n\n![Force error in motion over the p99 of a tick](tradeoff-" << s.name << ".svg)\n\n```cpp\n"
       << advice(rows, budget) << "```\n\n"
       << "| composition | mesh | set-up [ms] | tick p99, worst [us] | update p99 [ms] | force small [%] | large [%] "
-      << "| in motion [%] | moved large [%] | volume large [%] | remark |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      << "| in motion [%] | moved large [%] | volume large [%] | remark "
+         "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::set<std::string> shown;
   for (const auto& [title, error] : measures)
     for (const MeasuredComposition& m : trade_off_of(rows, error, true).front()) shown.insert(m.name);

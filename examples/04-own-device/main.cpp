@@ -1,8 +1,8 @@
 // Example 04: your own device.
 //
 // A device is a type with five functions (concepts/haptic_device.hpp): read, write, limits, start, stop. No base class,
-// no registration. simulated_stylus.hpp is a simulated one, so that this program runs anywhere; an adapter of a real SDK has
-// the same structure, and docs/tutorials.md describes units and pitfalls.
+// no registration. simulated_stylus.hpp is a simulated one, so that this program runs anywhere; an adapter of a real
+// SDK has the same structure, and docs/tutorials.md describes units and pitfalls.
 //
 //   1. The concept is checked at compile time: a missing `noexcept` is an error with the name of the function.
 //   2. The law suite tests what a compiler cannot check: forces beyond the peak, NaN, reads that fail, time that runs

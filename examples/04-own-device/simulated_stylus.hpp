@@ -76,10 +76,10 @@ class HeldStylus {
   double time_ = 0.0;
   bool plugged_ = true;
   palpate::RenderLimits motors_{{.peak_force = 3.3,
-                                  .continuous_force = 0.88,
-                                  .stiffness = 500.0,
-                                  .workspace_low = Vector3(-0.1, -0.1, -0.05),
-                                  .workspace_high = Vector3(0.1, 0.1, 0.15)}};
+                                 .continuous_force = 0.88,
+                                 .stiffness = 500.0,
+                                 .workspace_low = Vector3(-0.1, -0.1, -0.05),
+                                 .workspace_high = Vector3(0.1, 0.1, 0.15)}};
 };
 
 static_assert(palpate::HapticDevice<HeldStylus>);  // the compiler names what is missing

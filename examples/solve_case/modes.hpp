@@ -26,7 +26,8 @@ Modes solve_modes(const palpate::Mesh<E>& mesh, const json& load_case) {
   const auto start = std::chrono::steady_clock::now();
   palpate::Admitted<E> admitted = palpate::admit<E>(mesh);
   const auto body = palpate::make_body(std::move(admitted.mesh), materials);
-  Modes modes{palpate::natural_frequencies(body, scene.mapped(admitted.node_map, palpate::Vector3::Zero()), count), {}, 0.0};
+  Modes modes{
+      palpate::natural_frequencies(body, scene.mapped(admitted.node_map, palpate::Vector3::Zero()), count), {}, 0.0};
   modes.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   modes.node_map = std::move(admitted.node_map);
   return modes;

@@ -163,7 +163,7 @@ TEST_CASE("one tool pulls a fold while another presses next to it", "[contact][g
   const double own = 1e-3, common = 5e-4, radius = 4e-3;
   AnalyticTissue tissue(4, 0.2, own, common);  // vertices at -0.05, 0, 0.05
   ToolSession s(tissue,
-                  {round_tool(radius, {-0.05, 0, radius}, 0.0), round_tool(radius, {0.05, 0, radius + 1e-4}, 0.0)});
+                {round_tool(radius, {-0.05, 0, radius}, 0.0), round_tool(radius, {0.05, 0, radius + 1e-4}, 0.0)});
   s.tools[0].grasping = true;
   s.tick();
   REQUIRE(s.problem.is_holding(0));

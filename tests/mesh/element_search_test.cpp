@@ -53,8 +53,7 @@ TEMPLATE_TEST_CASE("every point inside is found with its reference coordinates",
     CHECK((position(mesh, *found) - p).norm() <= 1e-10);
     CHECK(beyond_faces<TestType>(found->xi) <= 1e-9);
   }
-  for (const Vector3& node :
-       mesh.positions) {  // nodes are on element boundaries, which count as inside
+  for (const Vector3& node : mesh.positions) {  // nodes are on element boundaries, which count as inside
     const auto found = search.find(node);
     REQUIRE(found);
     CHECK((position(mesh, *found) - node).norm() <= 1e-10);

@@ -12,7 +12,9 @@ struct Softer : TissueAdaptor<TissueGroup> {
   std::uint64_t compliance_revision() const noexcept { return tissue().compliance_revision(); }
   double compliance_floor() const noexcept { return 2.0 * tissue().compliance_floor(); }
 #ifdef PALPATE_GOOD_TWIN
-  double compliance_bound(int j) const noexcept { return 2.0 * tissue().compliance_bound(j); }
+  double compliance_bound(int j) const noexcept {
+    return 2.0 * tissue().compliance_bound(j);
+  }
 #endif
 };
 

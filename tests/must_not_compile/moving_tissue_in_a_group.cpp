@@ -13,7 +13,9 @@ struct Pad : StillTissue {
   double compliance_floor() const noexcept { return 1e-12; }
   const Eigen::Isometry3d& to_world() const noexcept { return place; }
 #ifndef PALPATE_GOOD_TWIN
-  Status begin_tick() noexcept { return {}; }
+  Status begin_tick() noexcept {
+    return {};
+  }
 #endif
 
   ContactSurface surface;

@@ -19,8 +19,7 @@
 #include <sstream>
 #include <thread>
 
-namespace reliability {
-namespace {
+namespace reliability { namespace {
 
 std::string option(int argc, char** argv, const std::string& name, const std::string& otherwise) {
   for (int i = 1; i + 1 < argc; ++i)

@@ -141,4 +141,3 @@ inline void raise_element(SetupErrorKind kind, Index e, const char* what) {
 }
 
 }}  // namespace palpate
-

@@ -77,7 +77,7 @@ inline void CondensedSystem::write(BinaryWriter& out) const {
 }
 
 inline CondensedSystem CondensedSystem::read_interior(BinaryReader& in, CholeskyAnalysis analysis,
-                                                              const SetupLimits& limits) {
+                                                      const SetupLimits& limits) {
   const auto kept = static_cast<Index>(analysis.kept().size());
   return {SparseCholesky::read(in, std::move(analysis), true, limits), kept};
 }
@@ -85,8 +85,7 @@ inline bool CondensedSystem::is_good(const BinaryReader& in) noexcept {
   return in.good();
 }
 
-inline SolveReport CondensedSystem::solve_into(const VectorX& b, VectorX& x,
-                                                       const SetupThreads& threads) noexcept {
+inline SolveReport CondensedSystem::solve_into(const VectorX& b, VectorX& x, const SetupThreads& threads) noexcept {
   interior_.eliminate_into(b, kept_load_, threads);
   const SolveReport report = dense_.solve_into(kept_load_, kept_answer_);
   detail::fill(kept_load_, 0.0);
@@ -102,4 +101,3 @@ inline SolveReport CondensedSystem::compliance_column(Index j, VectorX& column) 
 }
 
 }}  // namespace palpate
-

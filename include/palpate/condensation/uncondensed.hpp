@@ -56,4 +56,3 @@ inline SolveReport Uncondensed::compliance_column(Index j, VectorX& column) noex
 }
 
 }}  // namespace palpate
-

@@ -30,4 +30,3 @@ inline void BladeTool::require_valid() const {
 }
 
 }}  // namespace palpate
-

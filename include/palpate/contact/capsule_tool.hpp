@@ -37,4 +37,3 @@ inline void CapsuleTool::require_valid() const {
 }
 
 }}  // namespace palpate
-

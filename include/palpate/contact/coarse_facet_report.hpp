@@ -35,4 +35,3 @@ inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, dou
 }
 
 }}  // namespace palpate
-

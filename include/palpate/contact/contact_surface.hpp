@@ -151,7 +151,8 @@ class ContactSurface {
 
   /// The closest point of the resting surface: triangle, point, and signed distance (negative inside) by the
   /// angle-weighted pseudo-normal of the closest feature (Baerentzen and Aanaes 2005), or by the wedge in which the
-  /// point lies where more than two triangles meet at an edge, or several fans of triangles at a vertex. Where the closest feature is on the rim of an open surface, the distance is positive.
+  /// point lies where more than two triangles meet at an edge, or several fans of triangles at a vertex. Where the
+  /// closest feature is on the rim of an open surface, the distance is positive.
   struct Closest {
     int triangle = -1;
     Vector3 point = Vector3::Zero();

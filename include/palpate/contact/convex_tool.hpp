@@ -64,4 +64,3 @@ inline ConvexTool ConvexTool::box(const Vector3& size, double radius) {
 }
 
 }}  // namespace palpate
-

@@ -52,4 +52,3 @@ inline double linearity_error(const SphereIndentation& sphere, double body_size)
 }
 
 }}  // namespace palpate
-

@@ -23,4 +23,3 @@ inline void SphereTool::require_valid() const {
 }
 
 }}  // namespace palpate
-

@@ -15,7 +15,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Progress {
   std::string_view stage;  ///< "admission", "assembly", "factorisation", "condensation", "compliance", "checks",
                            ///< "accuracy", "cache"
-  double fraction = 0.0;  ///< of this stage, 0 ... 1
+  double fraction = 0.0;   ///< of this stage, 0 ... 1
 };
 
 /// Called occasionally during set-up, from the thread that runs it; returning false cancels (SetupError cancelled).
@@ -58,4 +58,3 @@ inline void SetupLimits::require_memory(double bytes, const char* what) const {
 }
 
 }}  // namespace palpate
-

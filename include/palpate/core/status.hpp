@@ -124,4 +124,3 @@ inline std::uint64_t StatusCounters::operator[](StatusFlag flag) const noexcept 
 }
 
 }}  // namespace palpate
-

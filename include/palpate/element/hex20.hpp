@@ -54,4 +54,3 @@ inline Eigen::Matrix<double, 20, 3> Hex20::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

@@ -69,4 +69,3 @@ inline Eigen::Matrix<double, 8, 3> Hex8::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

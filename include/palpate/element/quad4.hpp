@@ -45,4 +45,3 @@ inline Eigen::Matrix<double, 4, 2> Quad4::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

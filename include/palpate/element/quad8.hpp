@@ -40,4 +40,3 @@ inline Eigen::Matrix<double, 8, 2> Quad8::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

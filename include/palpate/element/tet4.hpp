@@ -48,4 +48,3 @@ inline Eigen::Matrix<double, 4, 3> Tet4::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

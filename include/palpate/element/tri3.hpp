@@ -35,4 +35,3 @@ inline Eigen::Matrix<double, 3, 2> Tri3::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

@@ -58,4 +58,3 @@ inline Eigen::Matrix<double, 6, 2> Tri6::reference_nodes() noexcept {
 }
 
 }}  // namespace palpate
-

@@ -67,4 +67,3 @@ inline int DurationHistogram::bin_of(std::uint64_t ns) noexcept {
 }
 
 }}  // namespace palpate
-

@@ -40,10 +40,9 @@ LoopReport run_haptic_loop(const std::tuple<Device&...>& devices, S& servo, cons
 }
 
 inline LoopReport detail::run_loop(std::vector<LoopDevice> devices, const LoopServo& servo,
-                                           const LoopOptions& options) {
+                                   const LoopOptions& options) {
   const double rate = rate_of(devices);
   return HapticLoop(std::move(devices), servo, rate).run(options);
 }
 
 }}  // namespace palpate
-

@@ -113,4 +113,3 @@ inline NewtonMethod::NewtonMethod(Index size, const NewtonParameters& parameters
 }
 
 }}  // namespace palpate
-

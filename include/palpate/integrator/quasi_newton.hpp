@@ -274,7 +274,7 @@ inline QuasiNewtonMethod::QuasiNewtonMethod(Index size, int memory)
 }
 
 inline void QuasiNewtonMethod::remember(const VectorX& from, const VectorX& to, const VectorX& residual_there,
-                                                double least) noexcept {
+                                        double least) noexcept {
   auto step = steps_.col(next_), change = changes_.col(next_);
   step = to - from;
   change = residual_ - residual_there;
@@ -286,4 +286,3 @@ inline void QuasiNewtonMethod::remember(const VectorX& from, const VectorX& to, 
 }
 
 }}  // namespace palpate
-

@@ -70,7 +70,7 @@ inline FileMesh::FileMesh(std::string name) {
 }
 
 inline void FileMesh::add_cell(Index tag, Index place, CellShape shape, std::uint32_t tag_set, NodeOrder order,
-                                       std::uint8_t file) {
+                               std::uint8_t file) {
   const std::size_t count = static_cast<std::size_t>(facts(shape).nodes), first = cell_nodes.size() - count;
   cells.push_back({tag, place, first, tag_set, shape, file});
   if (order.empty()) return;
@@ -90,4 +90,3 @@ PALPATE_COLD inline std::string fill_command(const std::string& surface) {
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

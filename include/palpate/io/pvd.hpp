@@ -66,4 +66,3 @@ inline void PvdSeries::put(const std::string& text) {
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

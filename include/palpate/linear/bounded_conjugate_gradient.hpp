@@ -37,8 +37,8 @@ class BoundedConjugateGradient {
   VectorX r_, z_, p_, q_;
 };
 
-inline BoundedSolveReport BoundedConjugateGradient::solve_into(
-    const OperatorView& op, const VectorX& b, VectorX& x, const BoundedSolveParameters& parameters) noexcept {
+inline BoundedSolveReport BoundedConjugateGradient::solve_into(const OperatorView& op, const VectorX& b, VectorX& x,
+                                                               const BoundedSolveParameters& parameters) noexcept {
   BoundedSolveReport report;
   detail::fill(x, 0.0);
   r_ = b;
@@ -67,4 +67,3 @@ inline BoundedSolveReport BoundedConjugateGradient::solve_into(
 }
 
 }}  // namespace palpate
-

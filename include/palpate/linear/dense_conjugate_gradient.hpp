@@ -67,10 +67,8 @@ inline void DenseConjugateGradient::write(BinaryWriter& out) const {
   detail::write_dense(out, op_.matrix());
 }
 
-inline DenseConjugateGradient DenseConjugateGradient::read(BinaryReader& in, Index size,
-                                                                   const SetupLimits& limits) {
+inline DenseConjugateGradient DenseConjugateGradient::read(BinaryReader& in, Index size, const SetupLimits& limits) {
   return {detail::read_dense<double>(in, size, limits), limits};
 }
 
 }}  // namespace palpate
-

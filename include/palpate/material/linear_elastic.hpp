@@ -64,4 +64,3 @@ inline std::optional<SetupProblem> LinearElastic::check() const {
 }
 
 }}  // namespace palpate
-

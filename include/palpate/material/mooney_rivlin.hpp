@@ -110,4 +110,3 @@ inline std::optional<SetupProblem> MooneyRivlin::check() const {
 }
 
 }}  // namespace palpate
-

@@ -96,4 +96,3 @@ inline bool NeoHookean::is_beyond_range(const Tensor3<double>& f) const noexcept
 }
 
 }}  // namespace palpate
-

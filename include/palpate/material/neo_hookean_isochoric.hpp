@@ -81,4 +81,3 @@ inline Matrix9 NeoHookeanIsochoric::tangent(const Tensor3<double>& f) const noex
 }
 
 }}  // namespace palpate
-

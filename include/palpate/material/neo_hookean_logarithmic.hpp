@@ -91,4 +91,3 @@ inline bool NeoHookeanLogarithmic::is_beyond_range(const Tensor3<double>& f) con
 }
 
 }}  // namespace palpate
-

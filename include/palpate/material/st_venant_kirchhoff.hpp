@@ -75,4 +75,3 @@ inline Matrix9 StVenantKirchhoff::tangent(const Tensor3<double>& f) const noexce
 }
 
 }}  // namespace palpate
-

@@ -65,4 +65,3 @@ inline const TissuePreset& tissue_preset(std::string_view name) {
 }
 
 }}  // namespace palpate
-

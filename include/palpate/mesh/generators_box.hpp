@@ -30,8 +30,7 @@ Mesh<Hex20> box_hex20(const Vector3& size, std::array<int, 3> cells, const Vecto
 Mesh<Tet10> box_tet10(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
                       const Vector3& origin = Vector3::Zero());
 
-inline Mesh<Hex8> box_hex8(const std::vector<double>& x, const std::vector<double>& y,
-                                   const std::vector<double>& z) {
+inline Mesh<Hex8> box_hex8(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
   const detail::BoxGrid grid{{detail::count_cells(x), detail::count_cells(y), detail::count_cells(z)}};
   if (static_cast<double>(x.size()) * static_cast<double>(y.size()) * static_cast<double>(z.size()) > 2147483647.0)
     raise(SetupErrorKind::count_too_large, "the box would have more than 2^31 nodes");
@@ -57,10 +56,8 @@ inline Mesh<Hex20> box_hex20(const Vector3& size, std::array<int, 3> cells, cons
   return promote<Hex20>(box_hex8(size, cells, origin));
 }
 
-inline Mesh<Tet10> box_tet10(const Vector3& size, std::array<int, 3> cells, BoxSplit split,
-                                     const Vector3& origin) {
+inline Mesh<Tet10> box_tet10(const Vector3& size, std::array<int, 3> cells, BoxSplit split, const Vector3& origin) {
   return promote<Tet10>(box_tet4(size, cells, split, origin));
 }
 
 }}  // namespace palpate
-

@@ -67,4 +67,3 @@ inline void GroupTable::tidy() {
 }
 
 }}  // namespace palpate
-

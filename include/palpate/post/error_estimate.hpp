@@ -112,4 +112,3 @@ inline std::vector<Matrix6> compliances_of(const std::vector<Matrix6>& elasticit
 }  // namespace detail
 
 }}  // namespace palpate
-

@@ -57,4 +57,3 @@ inline Principal principal_strain(Vector6 strain) noexcept {
 }
 
 }}  // namespace palpate
-

@@ -66,4 +66,3 @@ inline void von_mises(const StressColumns& stress, VectorX& equivalent) {
 }
 
 }}  // namespace palpate
-

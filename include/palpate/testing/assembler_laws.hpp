@@ -201,4 +201,3 @@ inline Violations zero_mode_laws(const MatrixX& dense, Index rigid_motions) {
 }
 
 }}}  // namespace palpate::testing
-

@@ -28,4 +28,3 @@ inline bool is_positive_definite(const MatrixX& symmetric) {
 }
 
 }}}  // namespace palpate::testing
-

@@ -186,4 +186,3 @@ inline std::string element_name(Index e) {
 }
 
 }}}  // namespace palpate::testing
-

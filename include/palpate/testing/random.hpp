@@ -57,4 +57,3 @@ inline Matrix3 random_rotation(Random& random) {
 }
 
 }}}  // namespace palpate::testing
-

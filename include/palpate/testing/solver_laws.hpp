@@ -108,7 +108,7 @@ Violations accuracy_laws(const Op& op, S& solver, double bound) {
 }
 
 inline Violations report_laws(const SolveReport& report, double relative_residual, bool small,
-                                      const SolverClaims& claims, const std::string& name) {
+                              const SolverClaims& claims, const std::string& name) {
   Violations v;
   const double rounding = 1e-15;
   if (!std::isnan(report.relative_residual))
@@ -121,4 +121,3 @@ inline Violations report_laws(const SolveReport& report, double relative_residua
 }
 
 }}}  // namespace palpate::testing
-

@@ -105,4 +105,3 @@ inline double stiffness_limit(double damping, double period, double delay) {
 }
 
 }}}  // namespace palpate::testing
-

@@ -1,5 +1,5 @@
-// A tissue of every family of solvers, touched in a session and cut where it can be; compiled without exceptions and RTTI,
-// with every public header (no_exceptions.cmake writes the list).
+// A tissue of every family of solvers, touched in a session and cut where it can be; compiled without exceptions and
+// RTTI, with every public header (no_exceptions.cmake writes the list).
 #include <palpate/own_types.hpp>
 
 #include "all_headers.hpp"

@@ -66,4 +66,3 @@ inline std::size_t DomainElasticity::place(std::size_t material, StrainPart part
 }
 
 }}  // namespace palpate
-

@@ -76,8 +76,7 @@ class TangentEnergyForces final : public EnergyForces {
   bool has_history_;
 };
 
-inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u,
-                                                     VectorX& f) noexcept {
+inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept {
   Matrix3 turn;
   turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
   turn /= 3.0;
@@ -88,4 +87,3 @@ inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positio
 }
 
 }}  // namespace palpate
-

@@ -71,4 +71,3 @@ inline double FreeValues::gershgorin_shift(VectorX& sums) const noexcept {
 }
 
 }}  // namespace palpate
-

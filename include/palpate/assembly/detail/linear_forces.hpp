@@ -44,4 +44,3 @@ inline DeformationReport LinearForces::force(const VectorX& u, VectorX& f) const
 }
 
 }}  // namespace palpate
-

@@ -34,4 +34,3 @@ inline NodeElements::NodeElements(const MeshRef& mesh) {
 }
 
 }}  // namespace palpate
-

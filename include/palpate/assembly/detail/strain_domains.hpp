@@ -201,4 +201,3 @@ inline void StrainDomain::add_force(const Vector6& stress, VectorX& f) const noe
 }
 
 }}  // namespace palpate
-

@@ -32,6 +32,4 @@ PALPATE_INLINE void bisect_elements(std::span<NodeId> elements, const std::vecto
   bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
 }
 
-
-
 }}}  // namespace palpate::detail

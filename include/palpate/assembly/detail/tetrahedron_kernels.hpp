@@ -20,4 +20,3 @@ inline const any_flags::TetrahedronKernels& tetrahedron_kernels() noexcept {
 }
 
 }}}  // namespace palpate::detail
-

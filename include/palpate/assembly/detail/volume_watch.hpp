@@ -71,4 +71,3 @@ inline DeformationReport report_of(const std::vector<DeformationReport>& parts) 
 }
 
 }}}  // namespace palpate::detail
-

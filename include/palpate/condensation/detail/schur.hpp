@@ -31,4 +31,3 @@ inline SchurComplement condense(const SparseLower& lower, std::vector<Index> kep
 }
 
 }}  // namespace palpate
-

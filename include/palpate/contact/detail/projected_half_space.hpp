@@ -72,8 +72,8 @@ class ProjectedHalfSpace {
   Blocks blocks_;
 };
 
-inline ProjectedHalfSpace::ProjectedHalfSpace(std::vector<HalfSpacePoint> vertices,
-                                                      std::vector<HalfSpaceMarks> marks, Blocks blocks) noexcept
+inline ProjectedHalfSpace::ProjectedHalfSpace(std::vector<HalfSpacePoint> vertices, std::vector<HalfSpaceMarks> marks,
+                                              Blocks blocks) noexcept
     : vertices_(std::move(vertices)), marks_(std::move(marks)), blocks_(std::move(blocks)) {}
 
 inline std::span<const int> ProjectedHalfSpace::columns(int row) const noexcept {
@@ -100,4 +100,3 @@ inline std::size_t ProjectedHalfSpace::bytes() const noexcept {
 }
 
 }}  // namespace palpate
-

@@ -59,8 +59,7 @@ inline std::uint64_t ContentHash::digest() const noexcept {
   return hash ^ (hash >> 32);
 }
 
-inline void ContentHash::add_stripe(std::array<std::uint64_t, lane_count>& lanes,
-                                            const unsigned char* bytes) noexcept {
+inline void ContentHash::add_stripe(std::array<std::uint64_t, lane_count>& lanes, const unsigned char* bytes) noexcept {
   for (std::size_t i = 0; i < lane_count; ++i) {
     std::uint64_t value;
     std::memcpy(&value, bytes + i * word, word);
@@ -83,4 +82,3 @@ inline void ContentHash::add_bytes(const void* data, std::size_t size) noexcept 
 }
 
 }}  // namespace palpate
-

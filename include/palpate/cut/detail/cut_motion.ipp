@@ -106,6 +106,4 @@ PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
   return made->set_mass(request_.mass) ? made : nullptr;
 }
 
-
-
 }}  // namespace palpate

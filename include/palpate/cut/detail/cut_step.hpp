@@ -46,4 +46,3 @@ inline void CutStep::add_squares(Index j, VectorX& sum) const noexcept {
 }
 
 }}  // namespace palpate
-

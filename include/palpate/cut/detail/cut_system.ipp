@@ -62,6 +62,4 @@ PALPATE_INLINE double BorderedUpdate::smallest_eigenvalue(const Eigen::LLT<Matri
   return std::min(value, 1.0);
 }
 
-
-
 }}  // namespace palpate

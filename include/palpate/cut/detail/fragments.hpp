@@ -95,7 +95,7 @@ std::vector<Fragment> unsupported_fragments(const CutTopology<E>& topology) {
 }
 
 inline int free_mode_count(std::span<const Vector3> positions, std::span<const NodeId> nodes,
-                                   std::span<const std::uint8_t> constrained) {
+                           std::span<const std::uint8_t> constrained) {
   std::vector<NodeId> supports;
   for (const NodeId node : nodes)
     if ((constrained[static_cast<std::size_t>(node)] & 7u) != 0) supports.push_back(node);
@@ -105,4 +105,3 @@ inline int free_mode_count(std::span<const Vector3> positions, std::span<const N
 }
 
 }}  // namespace palpate
-

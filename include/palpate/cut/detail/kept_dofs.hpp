@@ -53,4 +53,3 @@ inline void KeptDofs::shrink_to(Index size) noexcept {
 }
 
 }}  // namespace palpate
-

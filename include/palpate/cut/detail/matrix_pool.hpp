@@ -49,4 +49,3 @@ inline std::shared_ptr<MatrixX> MatrixPool::take(Index size) {
 }
 
 }}  // namespace palpate
-

@@ -47,6 +47,4 @@ PALPATE_INLINE void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, Po
   if (edges_.size() > most) edges_.erase(edges_.begin(), edges_.end() - most);
 }
 
-
-
 }}  // namespace palpate

@@ -88,4 +88,3 @@ inline double factor_derivative(double s, double x) noexcept {
 }
 
 }}}  // namespace palpate::serendipity
-

@@ -47,17 +47,15 @@ inline void ImplicitStep::coast(const VectorX& u, const VectorX& v, const Vector
   coasting_ = v + (scheme_.old_in_v * h_) * a;
 }
 
-inline void ImplicitStep::find_motion(const VectorX& end, VectorX& velocity,
-                                              VectorX& acceleration) const noexcept {
+inline void ImplicitStep::find_motion(const VectorX& end, VectorX& velocity, VectorX& acceleration) const noexcept {
   acceleration = acceleration_per_displacement() * (end - predicted_);
   velocity = coasting_ + (scheme_.new_in_v * h_) * acceleration;
 }
 
 inline double ImplicitStep::potential(const VectorX& velocity, const VectorX& damping_force,
-                                              const VectorX& acceleration, const VectorX& inertia) const noexcept {
+                                      const VectorX& acceleration, const VectorX& inertia) const noexcept {
   return 0.5 / velocity_per_displacement() * velocity.dot(damping_force) +
          0.5 / acceleration_per_displacement() * acceleration.dot(inertia);
 }
 
 }}  // namespace palpate
-

@@ -33,4 +33,3 @@ inline void limit_kinetic_energy(double available, const VectorX& mass, bool is_
 }
 
 }}  // namespace palpate
-

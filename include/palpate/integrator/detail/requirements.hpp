@@ -52,4 +52,3 @@ inline VectorX mass_of_dofs(const VectorX& nodal_mass) {
 }
 
 }}  // namespace palpate
-

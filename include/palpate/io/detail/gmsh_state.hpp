@@ -81,4 +81,3 @@ PALPATE_COLD inline Index read_count(TextReader& in, std::string_view what, Inde
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::gmsh
-

@@ -76,4 +76,3 @@ PALPATE_COLD inline void refuse_labels(std::string_view labels, const std::strin
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

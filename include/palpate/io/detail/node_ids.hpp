@@ -62,4 +62,3 @@ inline NodeId NodeIds::search(Index tag, const TextReader& in) const {
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

@@ -30,4 +30,3 @@ inline void sort_unique(std::vector<int>& numbers) {
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

@@ -49,4 +49,3 @@ inline std::uint32_t TagSets::find_or_add(FileMesh& mesh, std::span<const int> t
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io
-

@@ -49,4 +49,3 @@ inline void add_cells(const Cells& cells, const std::vector<int>& regions, FileM
 }
 
 }}}  // namespace palpate::PALPATE_ABI::io::vtk
-

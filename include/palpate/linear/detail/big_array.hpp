@@ -39,4 +39,3 @@ inline BigArray::BigArray(Index size) : size_(size) {
 }
 
 }}}  // namespace palpate::detail
-

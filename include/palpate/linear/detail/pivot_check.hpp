@@ -21,7 +21,7 @@ void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVect
                   const std::vector<Index>& node_of_dof, Index checked, double threshold);
 
 inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const NodeVector& place_of_dof,
-                                 const std::vector<Index>& node_of_dof, Index checked, double threshold) {
+                         const std::vector<Index>& node_of_dof, Index checked, double threshold) {
   std::vector<Index> bad;
   Index count = 0;
   double worst = infinity;
@@ -48,4 +48,3 @@ inline void check_pivots(const VectorX& pivots, const VectorX& diagonal, const N
 }
 
 }}}  // namespace palpate::detail
-

@@ -21,4 +21,3 @@ inline const any_flags::Kernels& processor_kernels() noexcept {
 }
 
 }}}  // namespace palpate::detail
-

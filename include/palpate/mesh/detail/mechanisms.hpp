@@ -34,10 +34,10 @@ struct Mechanism {
 
 /// Elements that share a face cannot move relative to each other without strain, so a strain-free motion of a part is a
 /// rigid-body motion. Finds the first part with a rigid motion that neither the constraints nor the joints with other
-/// parts prevent, to first order: hinges, spherical joints, chains and loops of them. Returns nothing if every component is
-/// a single part: for these see free_rigid_modes, which also documents the arguments. Lever arms below one millionth of
-/// a part's size are treated as zero. Clusters in which more than 900 motions depend on each other are skipped.
-/// O(elements), and for jointed parts the cube of the motions in a cluster; allocates.
+/// parts prevent, to first order: hinges, spherical joints, chains and loops of them. Returns nothing if every
+/// component is a single part: for these see free_rigid_modes, which also documents the arguments. Lever arms below one
+/// millionth of a part's size are treated as zero. Clusters in which more than 900 motions depend on each other are
+/// skipped. O(elements), and for jointed parts the cube of the motions in a cluster; allocates.
 std::optional<Mechanism> find_mechanism(const MeshRef& mesh, std::span<const std::uint8_t> constrained,
                                         const Vector3& origin = Vector3::Zero());
 

@@ -57,4 +57,3 @@ inline std::ostream& operator<<(std::ostream& out, const CacheReport& r) {
 }
 
 }}  // namespace palpate
-

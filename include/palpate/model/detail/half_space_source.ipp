@@ -86,6 +86,4 @@ PALPATE_INLINE double BoundaryNodes::length(NodeId node) const noexcept {
   return count > 0 ? sum / count : 0.0;
 }
 
-
-
 }}  // namespace palpate

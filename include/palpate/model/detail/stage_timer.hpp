@@ -34,4 +34,3 @@ inline StageTimer::~StageTimer() {
 }
 
 }}  // namespace palpate
-

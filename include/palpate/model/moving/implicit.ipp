@@ -52,6 +52,4 @@ PALPATE_INLINE void ImplicitMotion::set_prescribed(const VectorX& values) {
   motion_.set_prescribed(values);
 }
 
-
-
 }}  // namespace palpate

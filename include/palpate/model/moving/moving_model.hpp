@@ -16,8 +16,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Dynamics with implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>> (model/moving/implicit.hpp),
-/// Implicit<QuasiNewton<>> (model/moving/quasi_newton.hpp).
+/// Dynamics with implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>
+/// (model/moving/implicit.hpp), Implicit<QuasiNewton<>> (model/moving/quasi_newton.hpp).
 template <class StepSolver>
 struct Implicit {};
 
@@ -85,10 +85,11 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     rest->report_locking(setup_report());
     Touchable touchable =
         admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
-    if constexpr (requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
-      touchable.elements.clear();  // the dent of a small tool relaxes, its law does not
+    if constexpr (
+        requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
+      touchable.elements.clear();                   // the dent of a small tool relaxes, its law does not
     const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
-    bool must_hold = false;  // without supports there is no equilibrium
+    bool must_hold = false;                         // without supports there is no equilibrium
     if constexpr (requires { parameters.settle; }) must_hold = parameters.settle;
     if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
     if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));

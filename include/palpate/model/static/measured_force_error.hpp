@@ -24,4 +24,3 @@ inline ForceErrorOptions measured_force_error(int places) {
 }
 
 }}  // namespace palpate
-

@@ -99,6 +99,4 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const AccuracySearchR
   return out;
 }
 
-
-
 }}  // namespace palpate

@@ -75,6 +75,4 @@ PALPATE_INLINE PatchPolynomial::Terms PatchPolynomial::powers(const Vector3& x) 
   return p;
 }
 
-
-
 }}  // namespace palpate

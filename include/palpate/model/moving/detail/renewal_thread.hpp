@@ -66,4 +66,3 @@ inline void RenewalThread::run() noexcept {
 }
 
 }}  // namespace palpate
-

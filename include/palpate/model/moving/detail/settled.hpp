@@ -29,4 +29,3 @@ inline VectorX settled(Equilibrium& statics) {
 }
 
 }}}  // namespace palpate::detail
-

@@ -32,7 +32,7 @@ class SplitVertices {
 };
 
 inline SplitVertices::SplitVertices(std::span<const int> parent, std::size_t known,
-                                            const std::function<double(int)>& mass) {
+                                    const std::function<double(int)>& mass) {
   for (std::size_t v = known; v < parent.size(); ++v)
     if (parent[v] >= 0 && static_cast<std::size_t>(parent[v]) < known)
       shares_.push_back({parent[v], static_cast<int>(v), 0.0});
@@ -62,4 +62,3 @@ inline std::size_t SplitVertices::divide(std::span<VertexForce> forces, std::siz
 }
 
 }}}  // namespace palpate::detail
-

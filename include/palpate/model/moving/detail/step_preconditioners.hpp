@@ -39,70 +39,70 @@ concept StepPreconditioner =
     };
 // clang-format on
 
-    /// The inverse 3 x 3 diagonal blocks of A, updated when due. One block product per node and application.
-    class BlockJacobi {
-     public:
-      BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
+/// The inverse 3 x 3 diagonal blocks of A, updated when due. One block product per node and application.
+class BlockJacobi {
+ public:
+  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
 
-      /// Sets a new mass and new constrained dofs; the next update must have `again` = true.
-      void change(const DeformableBody& body);
-      template <class Tetrahedra>
-      void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool again) noexcept {
-        if (!again) return;
-        tetrahedra.diagonal_blocks(straight_, mixed_);
-        for (std::size_t i = 0; i < inverse_.size(); ++i) {
-          const auto node = static_cast<Index>(i);
-          const Vector3 d = node_vector(straight_, node), m = node_vector(mixed_, node);
-          Matrix3 a{{d[0], m[0], m[1]}, {m[0], d[1], m[2]}, {m[1], m[2], d[2]}};
-          a = factors.stiffness * a;
-          for (int c = 0; c < 3; ++c) a(c, c) += factors.mass * lumped_[node];
-          hold(constrained_[i], a, inverse_[i]);
-        }
-      }
-      void apply(const VectorX& r, VectorX& z) const noexcept;
+  /// Sets a new mass and new constrained dofs; the next update must have `again` = true.
+  void change(const DeformableBody& body);
+  template <class Tetrahedra>
+  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool again) noexcept {
+    if (!again) return;
+    tetrahedra.diagonal_blocks(straight_, mixed_);
+    for (std::size_t i = 0; i < inverse_.size(); ++i) {
+      const auto node = static_cast<Index>(i);
+      const Vector3 d = node_vector(straight_, node), m = node_vector(mixed_, node);
+      Matrix3 a{{d[0], m[0], m[1]}, {m[0], d[1], m[2]}, {m[1], m[2], d[2]}};
+      a = factors.stiffness * a;
+      for (int c = 0; c < 3; ++c) a(c, c) += factors.mass * lumped_[node];
+      hold(constrained_[i], a, inverse_[i]);
+    }
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept;
 
-     private:
-      /// Inverse of the free part of a block, zero elsewhere.
-      static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverted) noexcept;
+ private:
+  /// Inverse of the free part of a block, zero elsewhere.
+  static void hold(std::uint8_t constrained, Matrix3& a, Matrix3& inverted) noexcept;
 
-      VectorX lumped_;
-      std::vector<std::uint8_t> constrained_;
-      std::vector<Matrix3> inverse_;
-      VectorX straight_, mixed_;
-    };
+  VectorX lumped_;
+  std::vector<std::uint8_t> constrained_;
+  std::vector<Matrix3> inverse_;
+  VectorX straight_, mixed_;
+};
 
-    /// The factor of A at rest with the rotations of the nodes: R (M + K0)^-1 R^T. Best for long steps. Factorised
-    /// again when the factors of M and K change, which takes unbounded time; rotations are fitted in every step.
-    class CorotatedFactor {
-     public:
-      CorotatedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
-          : corotated_(body),
-            lumped_(body.lumped),
-            stiffness_(assemble_stiffness<Tet4>(rest, limits)),
-            factor_(body.pattern, corotated_.conditions(), body.positions, limits) {}
-      CorotatedFactor(const CorotatedFactor&) = delete;
-      CorotatedFactor& operator=(const CorotatedFactor&) = delete;
+/// The factor of A at rest with the rotations of the nodes: R (M + K0)^-1 R^T. Best for long steps. Factorised
+/// again when the factors of M and K change, which takes unbounded time; rotations are fitted in every step.
+class CorotatedFactor {
+ public:
+  CorotatedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+      : corotated_(body),
+        lumped_(body.lumped),
+        stiffness_(assemble_stiffness<Tet4>(rest, limits)),
+        factor_(body.pattern, corotated_.conditions(), body.positions, limits) {}
+  CorotatedFactor(const CorotatedFactor&) = delete;
+  CorotatedFactor& operator=(const CorotatedFactor&) = delete;
 
-      template <class Tetrahedra>
-      void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
-        if (factors != factors_) {
-          BlockMatrix& a = factor_.matrix();
-          a.set_zero();
-          a.add(factors.stiffness, stiffness_);
-          a.add_nodal(factors.mass, lumped_);
-          factor_.factorise();
-          factors_ = factors;
-        }
-        corotated_.update(u);
-      }
-      void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(factor_, r, z); }
+  template <class Tetrahedra>
+  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
+    if (factors != factors_) {
+      BlockMatrix& a = factor_.matrix();
+      a.set_zero();
+      a.add(factors.stiffness, stiffness_);
+      a.add_nodal(factors.mass, lumped_);
+      factor_.factorise();
+      factors_ = factors;
+    }
+    corotated_.update(u);
+  }
+  void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(factor_, r, z); }
 
-     private:
-      mutable CorotatedSolve corotated_;
-      VectorX lumped_;
-      BlockMatrix stiffness_;
-      mutable TangentSolver factor_;
-      StepFactors factors_;
+ private:
+  mutable CorotatedSolve corotated_;
+  VectorX lumped_;
+  BlockMatrix stiffness_;
+  mutable TangentSolver factor_;
+  StepFactors factors_;
 };
 
 inline BlockJacobi::BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
@@ -136,4 +136,3 @@ inline void BlockJacobi::hold(std::uint8_t constrained, Matrix3& a, Matrix3& inv
 }
 
 }}  // namespace palpate
-

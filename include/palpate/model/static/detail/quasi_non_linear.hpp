@@ -180,4 +180,3 @@ inline void StiffeningCurve::refuse(const std::string& what, double value) {
 }
 
 }}  // namespace palpate
-

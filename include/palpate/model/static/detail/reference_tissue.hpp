@@ -24,7 +24,7 @@ class ReferenceTissue : public LinearTissue<double> {
 };
 
 inline ReferenceTissue::ReferenceTissue(Mesh<Tet4> mesh, std::vector<Matrix6> elasticity, const Scene& scene,
-                                                const SetupOptions& options)
+                                        const SetupOptions& options)
     : LinearTissue<double>(options) {
   using E = Smoothed<Tet4>;
   const std::size_t regions = elasticity.size();
@@ -40,4 +40,3 @@ inline ReferenceTissue::ReferenceTissue(Mesh<Tet4> mesh, std::vector<Matrix6> el
 }
 
 }}  // namespace palpate
-

@@ -1,0 +1,27 @@
+# Checks that all C++ sources are formatted by clang-format 14 with .clang-format; other versions format differently.
+#   cmake -P cmake/check_format.cmake
+cmake_minimum_required(VERSION 3.21)
+
+find_program(format NAMES clang-format-14)
+if(NOT format)
+  message("skipped: clang-format-14 is not installed")
+  return()
+endif()
+get_filename_component(root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+set(files "")
+foreach(folder IN ITEMS include tests benchmarks examples)
+  file(GLOB_RECURSE found ${root}/${folder}/*.hpp ${root}/${folder}/*.ipp ${root}/${folder}/*.cpp)
+  list(APPEND files ${found})
+endforeach()
+# Programs of examples may be built inside of their folder.
+list(FILTER files EXCLUDE REGEX "/build[^/]*/")
+list(LENGTH files count)
+execute_process(COMMAND ${format} --dry-run -Werror ${files} RESULT_VARIABLE failed ERROR_VARIABLE differences)
+if(failed)
+  string(REGEX MATCHALL "[^\n]*: error:" places "${differences}")
+  list(TRANSFORM places REPLACE ": error:$" "")
+  list(TRANSFORM places REPLACE "^${root}/" "  ")
+  string(REPLACE ";" "\n" places "${places}")
+  message(FATAL_ERROR "these are formatted differently; clang-format-14 -i <file>:\n${places}")
+endif()
+message(STATUS "format: ${count} files are formatted by .clang-format")
