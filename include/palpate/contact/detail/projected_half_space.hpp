@@ -16,9 +16,9 @@ enum class HalfSpaceMark : std::uint8_t {
   near_edge = 2,           ///< a neighbour on the surface is beyond such an edge, or constrained
   singular = 4,            ///< the mesh around it gave no solution: the vertex is left as it is
   no_surface = 8,          ///< not on the boundary of the body: left as it is
-  several_materials = 16,  ///< less than two elements from another material
+  several_materials = 16,  ///< less than two elements, or an edge, from another material
   anisotropic = 32,        ///< the material differs from the isotropic one that was taken
-  near_support = 64,       ///< constrained nodes below, less than 1.3 edges away
+  near_support = 64,       ///< constrained, or above constrained nodes less than 1.3 edges away
   thin = 128,              ///< less than 0.7 edges away: facets do not show what these do to a dent; left as it is
 };
 

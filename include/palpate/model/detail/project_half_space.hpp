@@ -17,7 +17,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// The isotropic materials that stand for those of the elements at vertices, with the same bulk modulus and mean shear
 /// stiffness. `material_of` has the elasticity matrix of every element. `ratios` receives their different Poisson
 /// ratios; VertexMaterial::stiffness is an index of it. At a border the shear modulus is the mean, and the ratio that
-/// of most elements; several_materials is set within two elements of it. O(elements near vertices).
+/// of most elements; several_materials is set within two elements of it, or the longest edge. O(elements near
+/// vertices).
 std::vector<VertexMaterial> vertex_materials(const MeshRef& mesh, std::span<const NodeId> touched,
                                              const NodeElements& around, std::span<const Matrix6> elasticities,
                                              std::span<const int> material_of, std::vector<double>& ratios);
