@@ -451,7 +451,8 @@ PALPATE_INLINE double MovingTissue::found_compliance(const std::vector<Matrix3>&
 
 /// With inertia displacements change for other reasons than forces. The response of the last step to its forces shows
 /// the compliance of the tissue, where neither the tissue nor the springs take nearly all of them. That is the
-/// compliance along the forces: with friction ticks would take that across for as stiff, and sticking points come loose.
+/// compliance along the forces: with friction ticks would take that across for as stiff, and sticking points would
+/// slip.
 PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least_part = 0.15, most_part = 0.6;  // of the work
   full_.setZero();

@@ -18,7 +18,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// half a radius that is another one, or unstable. When ticks and steps agree, forces and displacements do not depend
 /// on the stiffness of the springs (a Robin condition between the parts of a partitioned problem; Badia, Nobile and
 /// Vergara 2008). Friction holds a point along the surface, too, by springs across its force: with dead loads across,
-/// sticking points would swing from step to step and come loose. Only the constructor and `resize` allocate.
+/// sticking points would swing from step to step and begin to slip. Only the constructor and `resize` allocate.
 class ContactSprings {
  public:
   static constexpr std::size_t most_per_point = 3;
