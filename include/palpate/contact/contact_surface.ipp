@@ -10,8 +10,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-class ContactSurface;
-
 namespace detail {
 
 /// Whether a point at `offset` from its closest point on the surface, which is on the edge between vertices a and b, is

@@ -90,10 +90,11 @@ class QuasiNewtonMethod {
     find_direction(problem, r, d);
   }
 
-  /// Improves d towards A d = f, where A is the second derivative at x, at which a problem was solved last: d becomes
-  /// the best of d and the response to what is left (Rayleigh and Ritz). Called after every step, with the last d, it
-  /// follows A. Products with A are differences of the residual over a small part of d; they are pairs for later
-  /// directions, too. At most two evaluations and a solve. False, with d = 0, where A is not positive on these.
+  /// Improves d, an approximate solution of A d = f with the second derivative A at x, where a problem was solved last:
+  /// takes the best combination of d and the preconditioned residual (Rayleigh and Ritz). Call it after every step with
+  /// the last d, which then follows A. Products with A are differences of the problem's residual over a small part of
+  /// d, and are also stored as pairs. At most two evaluations and one solve, no allocation. Returns false, with d = 0,
+  /// where A is not positive on these vectors.
   template <QuasiNewtonProblem P>
   bool improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept;
 
@@ -234,26 +235,36 @@ bool QuasiNewtonMethod::multiply(P& problem, const VectorX& x, const VectorX& d,
 
 template <QuasiNewtonProblem P>
 bool QuasiNewtonMethod::improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept {
-  constexpr double exact = 1e-3;  // less would be lost to rounding of the differences
+  constexpr double exact = 1e-3;       // smaller residuals are lost to the rounding of the differences
+  constexpr double least_part = 1e-9;  // of the energy of a direction, beside d
   VectorX &of_d = product_, &other = direction_, &of_other = other_product_;
-  of_d.setZero();
-  bool known = d.isZero(0.0) || multiply(problem, x, d, of_d);
-  of_other = f - of_d;
-  const bool is_exact = of_other.norm() <= exact * f.norm();
-  find_direction(problem, of_other, other);
-  known = known && (is_exact || multiply(problem, x, other, of_other));
-  // The minimum of d.A d / 2 - d.f among the sums of both.
-  const double a = d.dot(of_d), b = 0.5 * (d.dot(of_other) + other.dot(of_d)), c = other.dot(of_other);
-  const double p = d.dot(f), q = other.dot(f), determinant = a * c - b * b;
-  if (known && a > 0.0 && !is_exact && determinant > 1e-9 * a * c)
-    d = ((c * p - b * q) * d + (a * q - b * p) * other) / determinant;
-  else if (known && a > 0.0)
-    d *= p / a;
-  else if (known && a == 0.0 && c > 0.0)
-    d = q / c * other;
-  else
+  const auto fail = [&]() noexcept {
     d.setZero();
-  return !d.isZero(0.0);
+    return false;
+  };
+  of_d.setZero();
+  double energy = 0.0;
+  if (!d.isZero(0.0)) {
+    if (!multiply(problem, x, d, of_d) || !((energy = d.dot(of_d)) > 0.0)) return fail();
+    const double best = d.dot(f) / energy;
+    d *= best;
+    of_d *= best;
+    energy *= best * best;
+  }
+  of_other = f - of_d;
+  if (of_other.norm() <= exact * f.norm()) return true;
+  find_direction(problem, of_other, other);
+  if (!multiply(problem, x, other, of_other)) return fail();
+  const double all = other.dot(of_other);
+  if (!(all > 0.0)) return fail();
+  if (energy > 0.0) {  // conjugate to d, so that the best step along it keeps d
+    const double along = other.dot(of_d) / energy;
+    other -= along * d;
+    of_other -= along * of_d;
+  }
+  const double beside = other.dot(of_other);
+  if (beside > least_part * all) d += other.dot(f) / beside * other;
+  return true;
 }
 
 inline QuasiNewtonMethod::QuasiNewtonMethod(Index size, int memory)

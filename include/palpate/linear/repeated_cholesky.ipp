@@ -21,8 +21,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-struct FrontTree;
-
 /// A copy of a factor in single precision: a solve reads half as many bytes. Refers to the tree, which must outlive it.
 /// Only the constructor allocates.
 class SingleSweeps {

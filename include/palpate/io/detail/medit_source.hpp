@@ -44,17 +44,11 @@ inline constexpr std::array sections{
     Section{"FloatingPointPrecision", 155, Section::real_bits},
 };
 
-/// The section of that keyword, nullptr if it is skipped.
-constexpr const Section* find_section(std::string_view keyword) noexcept {
+/// The section with this keyword or code, nullptr if it is skipped.
+template <class Value>
+constexpr const Section* find_section(Value Section::*member, const Value& value) noexcept {
   for (const Section& s : sections)
-    if (s.keyword == keyword) return &s;
-  return nullptr;
-}
-
-/// The same by its code.
-constexpr const Section* find_section(Index code) noexcept {
-  for (const Section& s : sections)
-    if (s.code == code) return &s;
+    if (s.*member == value) return &s;
   return nullptr;
 }
 

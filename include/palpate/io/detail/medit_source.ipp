@@ -46,7 +46,7 @@ PALPATE_INLINE const Section* Source::next_text_section() {
       return nullptr;
     }
     const std::string_view word = in.token();
-    if (const Section* section = find_section(word)) return section;
+    if (const Section* section = find_section(&Section::keyword, word)) return section;
     const char first = word.front();
     const bool is_keyword = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
     if (!is_keyword && !skips)
@@ -70,7 +70,7 @@ PALPATE_INLINE const Section* Source::next_binary_section() {
   while (!ends_here()) {
     const Index code =
         binary_integer(in, {32, true, swap_}, "the code of a section", 1, max_int, SetupErrorKind::bad_file);
-    const Section* section = find_section(code);
+    const Section* section = find_section(&Section::code, static_cast<int>(code));
     if (section != nullptr && section->kind == Section::end) return section;
     next_ = binary_integer(in, {version_ < 3 ? 32 : 64, true, swap_}, "the byte of the next section", 0,
                            static_cast<Index>(in.size()), SetupErrorKind::bad_file);

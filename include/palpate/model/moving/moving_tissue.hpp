@@ -228,6 +228,7 @@ class MovingTissue : public ModelBase {
   void follow_stiffness(const std::vector<Matrix3>& rotation) noexcept;
   /// Compliance that the last step has found, relative to that of the ticks; 1 when it has found none.
   double found_compliance(const std::vector<Matrix3>& rotation) noexcept;
+  /// The same from the response of the last step to its forces, less what the springs bear of them. O(forces^2).
   double response_ratio(const std::vector<Matrix3>& rotation) noexcept;
   /// Sets springs for forces of a tick, or none.
   void set_springs(const Forces& forces) noexcept;

@@ -444,15 +444,15 @@ PALPATE_INLINE void MovingTissue::follow_stiffness(const std::vector<Matrix3>& r
   compliance_.set_scale(before + followed * (found - before));
 }
 
+/// With inertia displacements change for other reasons than forces, so that changes from step to step do not show the
+/// compliance; the response of the last step does. It shows the compliance along the forces only. With friction, ticks
+/// would use it across them, too, and sticking points would slip.
 PALPATE_INLINE double MovingTissue::found_compliance(const std::vector<Matrix3>& rotation) noexcept {
   if (!motion_->is_quasi_static()) return springs_.empty() || has_friction_ ? 1.0 : response_ratio(rotation);
   return std::exchange(found_stiffness_, false) ? secants_.work_ratio(compliance_, rotation) : 1.0;
 }
 
-/// With inertia displacements change for other reasons than forces. The response of the last step to its forces shows
-/// the compliance of the tissue, where neither the tissue nor the springs take nearly all of them. That is the
-/// compliance along the forces: with friction ticks would take that across for as stiff, and sticking points would
-/// slip.
+/// Accurate enough only where the tissue bears neither a small nor a large part of the forces.
 PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& rotation) noexcept {
   constexpr double least_part = 0.15, most_part = 0.6;  // of the work
   full_.setZero();
@@ -461,14 +461,9 @@ PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& r
   std::array<VertexForce, most_forces> item = used_.item;
   const std::span<VertexForce> borne(item.data(), used_.count);  // by the tissue
   springs_.add_change(motion_->displacement(), response_, borne);
-  double work = 0.0, predicted = 0.0;
-  for (const VertexForce& f : borne) {
-    const Vector3& force = f.force.in_model_axes();
-    work += force.dot(node_vector(response_, nodes_[vertex(f)]));
-    for (const VertexForce& g : borne)
-      predicted += force.dot(compliance_.rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
-  }
-  const double part = work / full_.dot(response_);
+  double work = 0.0;
+  for (const VertexForce& f : borne) work += f.force.in_model_axes().dot(node_vector(response_, nodes_[vertex(f)]));
+  const double predicted = compliance_.work(rotation, borne), part = work / full_.dot(response_);
   return part >= least_part && part <= most_part && predicted > 0.0 ? work / predicted : 1.0;
 }
 

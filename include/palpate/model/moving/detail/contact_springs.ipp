@@ -64,13 +64,13 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
   springs_.push_back(spring);
   forces_of_.push_back(of);
   if (!has_friction || point.grasped) return;
+  const Vector3 across = direction.unitOrthogonal();
   spring.pulls = true;
-  spring.direction = direction.unitOrthogonal();
-  for (int k = 0; k < 2; ++k) {
-    spring.reach = spring.direction.dot(moved);
+  for (const Vector3& axis : {across, cross(direction, across)}) {
+    spring.direction = axis;
+    spring.reach = axis.dot(moved);
     springs_.push_back(spring);
     forces_of_.push_back(of);
-    spring.direction = cross(direction, spring.direction);
   }
 }
 

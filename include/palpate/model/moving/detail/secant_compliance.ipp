@@ -59,13 +59,10 @@ PALPATE_INLINE double SecantCompliance::work_ratio(const VertexCompliance& compl
                                                    const std::vector<Matrix3>& rotation) const noexcept {
   if (count_ == 0) return 1.0;
   const Pair& pair = pair_[count_ - 1];
-  double product = 0.0, own = 0.0;
-  for (const VertexForce& f : pair.force) {
-    const Vector3& y = f.force.in_model_axes();
-    product += y.dot(pair.moved[static_cast<std::size_t>(f.vertex)]);
-    for (const VertexForce& g : pair.force)
-      own += y.dot(compliance.rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
-  }
+  double product = 0.0;
+  for (const VertexForce& f : pair.force)
+    product += f.force.in_model_axes().dot(pair.moved[static_cast<std::size_t>(f.vertex)]);
+  const double own = compliance.work(rotation, pair.force);
   return own > 0.0 ? product / own : 1.0;
 }
 

@@ -1,6 +1,7 @@
 // The contact compliance of the vertices of a surface that cuts change.
 #pragma once
 
+#include <palpate/concepts/vertex_force.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,6 +103,15 @@ class VertexCompliance {
   Matrix3 rotated(const std::vector<Matrix3>& rotation, int i, int j) const noexcept {
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
     return rotation[a] * at_rest(a, b) * rotation[b].transpose();
+  }
+  /// Sum of f_i . C_ij f_j over forces on vertices rotated by `rotation`: twice the energy that they store [J].
+  /// O(forces^2).
+  double work(const std::vector<Matrix3>& rotation, std::span<const VertexForce> forces) const noexcept {
+    double sum = 0.0;
+    for (const VertexForce& f : forces)
+      for (const VertexForce& g : forces)
+        sum += f.force.in_model_axes().dot(rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
+    return sum;
   }
   /// See TissueModel.
   double bound(int j) const noexcept {

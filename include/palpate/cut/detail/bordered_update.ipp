@@ -1,8 +1,8 @@
-// Definitions of cut_system.hpp.
+// Definitions of bordered_update.hpp.
 #pragma once
 
+#include <palpate/cut/detail/bordered_update.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/cut/detail/cut_system.hpp>
 
 #include <algorithm>
 #include <cmath>
