@@ -1,4 +1,4 @@
-// The contact compliance of the vertices of a surface that cuts change.
+// The contact compliance of the vertices of a moving surface, which cuts may change.
 #pragma once
 
 #include <palpate/concepts/vertex_force.hpp>
