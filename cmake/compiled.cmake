@@ -64,8 +64,9 @@ foreach(room IN LISTS rooms)
   palpate_source(${room} ${taken})
 endforeach()
 
-# The dense kernels of the solvers, and those of explicit neo-Hookean forces, are compiled for other processors
-# too, and chosen at run time (linear/detail/processor_kernels.hpp, assembly/detail/tetrahedron_kernels.hpp). At least
+# The dense kernels of the solvers, those of explicit neo-Hookean forces and those of contact are compiled for other
+# processors too, and chosen at run time (linear/detail/processor_kernels.hpp, assembly/detail/tetrahedron_kernels.hpp,
+# contact/detail/contact_kernels.hpp). At least
 # -O2, so that functions of Eigen and the standard library are inlined: the linker could choose a copy of one that is
 # compiled for AVX for the whole program. Not on Windows, where g++ does not align the stack for AVX.
 set(kernel_sources "")
@@ -77,9 +78,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_CXX_COMPILE
     set(source ${PROJECT_BINARY_DIR}/compiled/kernels_${name}.cpp)
     file(CONFIGURE OUTPUT ${source} @ONLY CONTENT "#define PALPATE_KERNEL_SET _${name}
 #include <palpate/assembly/detail/tetrahedron_kernels_here.hpp>
+#include <palpate/contact/detail/contact_kernels_here.hpp>
 #include <palpate/linear/detail/kernels_here.hpp>
 const palpate::any_flags::Kernels palpate::any_flags::kernels_${name} = palpate::detail::kernels_here;
 const palpate::any_flags::TetrahedronKernels palpate::any_flags::tetrahedra_${name} = palpate::detail::tetrahedra_here;
+const palpate::any_flags::ContactKernels palpate::any_flags::contacts_${name} = palpate::detail::contacts_here;
 ")
     set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-O2;${flags}")
     list(APPEND kernel_sources ${source})

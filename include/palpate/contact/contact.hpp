@@ -76,9 +76,6 @@ struct ContactTool {
   Vector3 outward = Vector3::Zero();              ///< of a sphere that presses: where it came from, unit; else zero
   double entered = -infinity;  ///< height of its highest contact at rest above its centre, along `outward` [m]
 
-  Vector3 friction_displacement = Vector3::Zero(),
-          friction_rotation = Vector3::Zero();  ///< of the coupling under friction [m], [rad]
-
   /// Makes the tool inactive and sets force and torque to zero.
   void lift() noexcept;
   /// Back to the state before the first tick; geometry and coupling stay.

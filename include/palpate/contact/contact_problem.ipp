@@ -425,10 +425,12 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
     points += rows_.has_area(i);
-    const double length = surface.facet_length(c.triangle);
-    if (rows_.is_on_thin_body(i) || length > longest_stretched || (!rows_.is_known(i) && length > longest))
+    const auto is_longer = [area = surface.double_area_squared(c.triangle)](double length) {
+      return area > length * length * length * length;
+    };
+    if (rows_.is_on_thin_body(i) || is_longer(longest_stretched) || (!rows_.is_known(i) && is_longer(longest)))
       on_coarse += c.force;
-    else if (length > very_long * tool.radius)
+    else if (is_longer(very_long * tool.radius))
       on_very_long += c.force;
   }
   if (points == 1 || points == 2) on_coarse += on_very_long;
@@ -694,7 +696,7 @@ PALPATE_INLINE void ContactProblem::correct_normals(const TissueView& tissue, To
   for (int k = 0; k < most_corrections; ++k) {
     const double estimate = estimate_safety * rows_.remaining_change(tools);
     if (estimate <= parameters_.force_tolerance || !(estimate <= largest_correction)) return;
-    if (!rows_.correct_normals(tissue, candidates_, tools)) status.set(StatusFlag::solver_not_converged);
+    if (!rows_.correct_normals(tools)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tissue, candidates_, tools, displacement_);
   }
 }
@@ -750,17 +752,21 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
-  for (const int i : candidates_.within(reaches, tools)) {
-    Candidate& c = candidates_.items()[at(i)];
+  for (Candidates::Near& near : candidates_.within(reaches, tools)) {
+    const double reach = reaches[at(near.tool)];
+    if (candidates_.least_gap(near) > reach) continue;
+    Candidate& c = candidates_.items()[at(near.number)];
+    candidates_.note_gap(near);
+    if (c.row >= 0 || candidates_.least_gap(c) > reach) continue;
     const bool is_finer = !may_have_row(c);
-    if (c.row >= 0 || (is_finer && levels_.has_areas()) || is_grasped(c)) continue;
+    if ((is_finer && levels_.has_areas()) || is_grasped(c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
-    const double reach = reaches[at(c.tool)];
-    if (candidates_.least_gap(c) > reach) continue;
     if (candidates_.is_stale(c)) {
-      if (candidates_.raise_least_gap(tissue, tool, start_, c) > reach) continue;
-      candidates_.evaluate(tissue, tool, start_, c);
+      const bool is_far = candidates_.raise_least_gap(tissue, tool, start_, c) > reach;
+      if (!is_far) candidates_.evaluate(tissue, tool, start_, c);
+      candidates_.note_gap(near);
+      if (is_far) continue;
     }
     double gap = c.gap + c.normal.dot(ahead.path);
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);

@@ -193,8 +193,7 @@ PALPATE_INLINE KnownErrors ContactSurface::known_errors(int body) const noexcept
 }
 
 PALPATE_INLINE double ContactSurface::facet_length(int t) const noexcept {
-  const Triangle& v = triangle(t);
-  return std::sqrt(cross(position(v[1]) - position(v[0]), position(v[2]) - position(v[0])).norm());
+  return std::sqrt(std::sqrt(double_area_squared(t)));
 }
 
 inline TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {

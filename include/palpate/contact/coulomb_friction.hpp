@@ -3,6 +3,8 @@
 
 #include <palpate/core/types.hpp>
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -28,9 +30,15 @@ class CoulombFriction {
   /// Contact i: its unit normal, the drift d_i [m], and the friction force on the tool to start from [N]. A contact
   /// that does not stick has no friction: it came into contact in this tick.
   void set(int i, const Vector3& normal, const Vector3& drift, const Vector3& friction_force, bool sticks) noexcept;
-  /// W_ij: displacement of tool over tissue at i per force at j [m/N]: c and `own` times the identity. For every pair
-  /// of contacts once, since W_ji is its transpose.
-  inline void set(int i, int j, const Matrix3& c, double own) noexcept;
+  /// Its tangents, unit vectors.
+  std::array<Vector3, 2> tangents(int i) const noexcept {
+    const Frame& f = frame_[at(i)];
+    return {Vector3(f.x.first, f.y.first, f.z.first), Vector3(f.x.second, f.y.second, f.z.second)};
+  }
+  /// Displacements of tool over tissue at i per force at all j <= i [m/N], in the frames of both contacts: along axis a
+  /// of i per force along axis b of j at w[(3 a + b) stride + j]. The axes are two tangents and the normal. Those at j
+  /// per force at i are the transpose.
+  void set_row(int i, const double* w, std::size_t stride) noexcept;
   /// Sets the normal forces of the first `count` contacts, whose W is set.
   void begin(int count, const double* lambda) noexcept;
   /// Changes the normal forces; friction forces above mu lambda are shortened.
@@ -43,8 +51,6 @@ class CoulombFriction {
   Vector3 force(int i) const noexcept { return in_model(i, force_[at(i)]); }
   /// Displacement due to the friction forces at contact i, tool over tissue, along the normal [m]. O(rows).
   double normal_displacement(int i) const noexcept;
-  /// The whole displacement [m]. O(rows).
-  Vector3 displacement(int i) const noexcept;
 
  private:
   /// Components along the two tangents of a contact. Not an Eigen vector: expressions of these cost much to compile.
@@ -58,7 +64,6 @@ class CoulombFriction {
   };
   static_assert(sizeof(Pair) == 2 * sizeof(double));  // arrays of pairs are read as arrays of numbers
   struct Frame {
-    Vector3 normal;
     Pair x, y, z;  // components of both tangents
     Pair along(const Vector3& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
     bool sticks = false;

@@ -32,32 +32,22 @@ inline Vector3 unit_across(const Vector3& n) noexcept {
 PALPATE_INLINE void CoulombFriction::set(int i, const Vector3& normal, const Vector3& drift,
                                          const Vector3& friction_force, bool sticks) noexcept {
   const Vector3 a = unit_across(normal), b = cross(normal, a);
-  const Frame& f = frame_[at(i)] = {normal, {a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}, sticks};
+  const Frame& f = frame_[at(i)] = {{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}, sticks};
   drift_[at(i)] = f.along(drift);
   force_[at(i)] = f.along(friction_force);
 }
 
-inline void CoulombFriction::set(int i, int j, const Matrix3& c, double own) noexcept {
-  const Frame &f = frame_[at(i)], &g = frame_[at(j)];
-  const double *m = f.normal.data(), *n = g.normal.data();
-  const double cx = c(0, 0) + own, cy = c(1, 1) + own, cz = c(2, 2) + own;
-  const Pair x = cx * g.x + c(0, 1) * g.y + c(0, 2) * g.z;  // at i, per force along each tangent of j
-  const Pair y = c(1, 0) * g.x + cy * g.y + c(1, 2) * g.z;
-  const Pair z = c(2, 0) * g.x + c(2, 1) * g.y + cz * g.z;
-  const Pair first = f.x.first * x + f.y.first * y + f.z.first * z;
-  const Pair second = f.x.second * x + f.y.second * y + f.z.second * z;
-  across_[place(i, j)] = m[0] * x + m[1] * y + m[2] * z;
-  across_[place(j, i)] = (cx * n[0] + c(0, 1) * n[1] + c(0, 2) * n[2]) * f.x +
-                         (c(1, 0) * n[0] + cy * n[1] + c(1, 2) * n[2]) * f.y +
-                         (c(2, 0) * n[0] + c(2, 1) * n[1] + cz * n[2]) * f.z;
-  along_[place(2 * i, j)] = first;
-  along_[place(2 * i + 1, j)] = second;
-  along_[place(2 * j, i)] = {first.first, second.first};
-  along_[place(2 * j + 1, i)] = {first.second, second.second};
-  if (i != j) return;
-  const double stiffest =
-      0.5 * (first.first + second.second) + std::hypot(0.5 * (first.first - second.second), first.second);
-  step_[at(i)] = 1.0 / stiffest;
+PALPATE_INLINE void CoulombFriction::set_row(int i, const double* w, std::size_t stride) noexcept {
+  for (int j = 0; j <= i; ++j, ++w) {
+    const double xx = w[0], xy = w[stride], yx = w[3 * stride], yy = w[4 * stride];
+    across_[place(i, j)] = {w[6 * stride], w[7 * stride]};
+    across_[place(j, i)] = {w[2 * stride], w[5 * stride]};
+    along_[place(2 * i, j)] = {xx, xy};
+    along_[place(2 * i + 1, j)] = {yx, yy};
+    along_[place(2 * j, i)] = {xx, yx};
+    along_[place(2 * j + 1, i)] = {xy, yy};
+    if (i == j) step_[at(i)] = 1.0 / (0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));  // 1 / the stiffest
+  }
 }
 
 PALPATE_INLINE void CoulombFriction::begin(int count, const double* lambda) noexcept {
@@ -115,10 +105,6 @@ PALPATE_INLINE double CoulombFriction::normal_displacement(int i) const noexcept
 inline CoulombFriction::Pair CoulombFriction::tangential_displacement(int i) const noexcept {
   const double* const forces = &force_.front().first;
   return {detail::dot(along_row(2 * i), forces, 2 * count_), detail::dot(along_row(2 * i + 1), forces, 2 * count_)};
-}
-
-PALPATE_INLINE Vector3 CoulombFriction::displacement(int i) const noexcept {
-  return in_model(i, tangential_displacement(i)) + normal_displacement(i) * frame_[at(i)].normal;
 }
 
 /// A friction force projected on the friction disc of its contact: at most mu lambda.

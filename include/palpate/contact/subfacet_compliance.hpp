@@ -31,7 +31,9 @@ class SubfacetCompliance {
   /// compliance of the mesh only. `first`: per vertex j the number of its first block, one past the end last; `blocks`:
   /// displacement of other vertices, and of j itself, per force on j.
   SubfacetCompliance(std::vector<HalfSpacePoint> vertices, std::vector<int> first, std::vector<Block> blocks)
-      : vertices_(std::move(vertices)), first_(std::move(first)), blocks_(std::move(blocks)) {}
+      : vertices_(std::move(vertices)), first_(std::move(first)), blocks_(std::move(blocks)) {
+    sort_blocks();
+  }
 
   explicit SubfacetCompliance(const ProjectedHalfSpace& table);
   /// Of a surface that joins those of several bodies, whose vertices follow each other; null: nothing is known.
@@ -64,19 +66,22 @@ class SubfacetCompliance {
   /// vertices it has the half-space of the others: they do not affect a dent that is small for the facet. Within
   /// the last quarter of the facet the half-space gets stiffer, and between fixed vertices there is none.
   HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
+  /// Whether `point` is known.
+  bool knows(const ContactSample& sample) const noexcept;
   /// chi G of two different points; zero where one is not known [m/N].
   static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;
   /// Whether different vertices may be at the same place.
   bool has_copies() const noexcept { return has_copies_; }
-  /// N_p^T chi G_h N_q [m/N]. Checks the blocks of up to three vertices.
+  /// N_p^T chi G_h N_q [m/N]. Searches the blocks of up to three vertices.
   Matrix3 shown(const ContactSample& p, const ContactSample& q) const noexcept;
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  void sort_blocks();
 
   std::vector<HalfSpacePoint> vertices_;
   std::vector<int> first_;
-  std::vector<Block> blocks_;
+  std::vector<Block> blocks_;  // of a vertex j by the number of the other
   bool has_copies_ = false;
 };
 

@@ -23,6 +23,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const ProjectedHalfSpace& 
     blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
     first_.push_back(static_cast<int>(blocks_.size()));
   }
+  sort_blocks();
 }
 
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodies) {
@@ -57,6 +58,24 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
     first_.push_back(static_cast<int>(blocks_.size()));
   }
   has_copies_ = whole.has_copies_ || std::ranges::any_of(copies, [](const auto& all) { return all.size() > 1; });
+  sort_blocks();
+}
+
+PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
+  for (std::size_t v = 0; v + 1 < first_.size(); ++v)
+    std::sort(blocks_.begin() + first_[v], blocks_.begin() + first_[v + 1],
+              [](const Block& a, const Block& b) { return a.vertex < b.vertex; });
+}
+
+PALPATE_INLINE bool SubfacetCompliance::knows(const ContactSample& sample) const noexcept {
+  bool any = false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (sample.weights[a] == 0.0) continue;
+    const HalfSpacePoint& own = vertex(sample.vertices[a]);
+    if (!own.is_known() && !own.is_fixed) return false;
+    any = any || own.is_known();
+  }
+  return any;
 }
 
 PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
@@ -92,10 +111,14 @@ PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const ContactSample& p, const C
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t b = 0; b < 3; ++b) {
     if (q.weights[b] == 0.0) continue;
-    for (const Block& block : blocks(q.vertices[b]))
-      for (std::size_t a = 0; a < 3; ++a)
-        if (block.vertex == p.vertices[a] && p.weights[a] > 0.0)
-          sum.noalias() += (p.weights[a] * q.weights[b]) * block.shown;
+    const std::span<const Block> own = blocks(q.vertices[b]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!(p.weights[a] > 0.0)) continue;
+      const auto found = std::lower_bound(own.begin(), own.end(), p.vertices[a],
+                                          [](const Block& block, int vertex) { return block.vertex < vertex; });
+      if (found != own.end() && found->vertex == p.vertices[a])
+        sum.noalias() += (p.weights[a] * q.weights[b]) * found->shown;
+    }
   }
   return sum;
 }

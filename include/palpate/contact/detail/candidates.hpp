@@ -38,6 +38,9 @@ class Candidates {
     if (!subfacet_ || depends_on_pad(samples_[sample])) return {};
     return subfacet_->point(samples_[sample], samples_.normal(sample));
   }
+  bool knows_half_space(int sample) const noexcept {
+    return subfacet_ && !depends_on_pad(samples_[sample]) && subfacet_->knows(samples_[sample]);
+  }
   /// The vertices of pads that tools grasp. A pad moves the mesh: it and the points beside it have the compliance of
   /// the mesh only, so that elements are not inverted by the part of the displacement that the mesh does not show.
   /// Returns whether these are others than before.
@@ -98,11 +101,19 @@ class Candidates {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
 
-  /// Numbers of all candidates whose gap may be at most that of their tool in `reach`, and of some more, in increasing
-  /// order. Collected again only when spheres and surface have moved by a part of the radius: most candidates are
-  /// farther, and visiting all of them in every round would cost as much as a small contact.
-  std::span<const int> within(const std::array<double, maximum_tools>& reach,
-                              std::span<const ContactTool> tools) noexcept;
+  /// A candidate that may be close, small enough for many of them to stay in the cache.
+  struct Near {
+    int number, tool;
+    double until;  ///< travel up to which its gap is not negative, or more [m]
+  };
+  /// All candidates whose gap may be at most that of their tool in `reach`, and some more, by increasing number.
+  /// Collected again only when spheres and surface have moved by a part of the radius: most candidates are farther, and
+  /// visiting all of them in every round would cost as much as a small contact.
+  std::span<Near> within(const std::array<double, maximum_tools>& reach, std::span<const ContactTool> tools) noexcept;
+  /// Lower bound of the present gap, as of `note_gap`.
+  double least_gap(const Near& n) const noexcept { return n.until - travel(static_cast<std::size_t>(n.tool)); }
+  /// Takes the bound of the candidate itself.
+  void note_gap(Near& n) const noexcept { n.until = until(list_.points[n.number]); }
 
   /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs
   /// more than that, and returns the bound.
@@ -147,6 +158,7 @@ class Candidates {
   bool is_pinned(const ContactSample& sample) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
   double travel(std::size_t tool) const noexcept { return travel_[tool] + surface_travel_; }
+  static double until(const Candidate& c) noexcept { return c.gap + c.seen; }
 
   struct List {
     CandidateList points;
@@ -199,8 +211,8 @@ class Candidates {
   int loaded_count_ = 0;
   bool valid_ = false, is_new_ = false, lost_forces_ = false;
   std::uint64_t revision_ = 0;
-  std::vector<int> near_;  // numbers of candidates
-  int near_count_ = -1;    // negative: not collected
+  std::vector<Near> near_;
+  int near_count_ = -1;  // negative: not collected
   std::array<double, maximum_tools> near_range_{}, near_travel_{};
   std::array<Vector3, maximum_tools> proxy_, outward_;
   std::array<double, maximum_tools> entered_{};

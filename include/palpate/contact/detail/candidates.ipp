@@ -168,10 +168,9 @@ PALPATE_INLINE const Vector3& Candidates::position(const TissueView& tissue, Sur
 PALPATE_INLINE Candidates::Bound Candidates::bound(const TissueView& tissue, SurfaceDisplacement& displacement,
                                                    int number) const noexcept {
   const ContactSample& sample = samples_[number];
-  const HalfSpacePoint point = half_space_point(number);
-  if (!point.is_known()) return {place_by_vertices(tissue, displacement, sample), 0.0};
+  if (!knows_half_space(number)) return {place_by_vertices(tissue, displacement, sample), 0.0};
   return {rest(tissue.contact_surface(), sample) + displacement.without_half_space(tissue, *subfacet_, sample),
-          displacement.largest_bulge(tissue, *subfacet_, samples_, point.normal)};
+          displacement.largest_bulge(tissue, *subfacet_, samples_, samples_.normal(number))};
 }
 
 PALPATE_INLINE double Candidates::longest_move(const TissueView& tissue, SurfaceDisplacement& displacement,
@@ -191,8 +190,8 @@ PALPATE_INLINE double Candidates::raise_least_gap(const TissueView& tissue, cons
   return c.gap;
 }
 
-PALPATE_INLINE std::span<const int> Candidates::within(const std::array<double, maximum_tools>& reach,
-                                                       std::span<const ContactTool> tools) noexcept {
+PALPATE_INLINE std::span<Candidates::Near> Candidates::within(const std::array<double, maximum_tools>& reach,
+                                                              std::span<const ContactTool> tools) noexcept {
   constexpr double extra = 0.1;  // radii
   bool known = near_count_ >= 0;
   for (std::size_t t = 0; t < tools.size(); ++t)
@@ -205,7 +204,7 @@ PALPATE_INLINE std::span<const int> Candidates::within(const std::array<double, 
     near_count_ = 0;
     for (int i = 0; i < list_.points.count(); ++i)
       if (const Candidate& c = list_.points[i]; !(least_gap(c) > near_range_[static_cast<std::size_t>(c.tool)]))
-        near_[static_cast<std::size_t>(near_count_++)] = i;
+        near_[static_cast<std::size_t>(near_count_++)] = {i, c.tool, until(c)};
   }
   return {near_.data(), static_cast<std::size_t>(near_count_)};
 }

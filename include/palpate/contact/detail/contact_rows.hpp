@@ -5,6 +5,7 @@
 #include <palpate/contact/detail/candidates.hpp>
 #include <palpate/contact/detail/complementarity.hpp>
 #include <palpate/contact/detail/point_compliance.hpp>
+#include <palpate/contact/detail/row_compliance.hpp>
 
 #include <algorithm>
 
@@ -112,7 +113,7 @@ class ContactRows {
   /// A step from the solution with the same W, as in a chord method, after `remaining_change`, where that is finite:
   /// forces act along the normals at the solution, and gaps are distances there. `apply` must follow. False when the
   /// iteration was stopped early. No allocation; O(rows^2).
-  bool correct_normals(const TissueView& tissue, const Candidates& points, std::span<const ContactTool> tools) noexcept;
+  bool correct_normals(std::span<const ContactTool> tools) noexcept;
   /// At the end of a tick: a point that slipped gets a new stick anchor at its present place; one that sticks keeps its
   /// anchor, as do all where the forces have not settled.
   void stick(std::span<const ContactTool> tools) noexcept;
@@ -126,15 +127,13 @@ class ContactRows {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
-  void build_friction(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
-  inline static Matrix3 rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
-                                              const Vector3& by_arm) noexcept;
-  inline static Vector3 coupling_displacement(const ContactTool& tool, const Contact& row) noexcept;
-  void store_friction(std::span<ContactTool> tools) const noexcept;
+  void set_friction(const ContactTool& tool, int i) noexcept;
   double estimate_change(std::span<const ContactTool> tools) noexcept;
-  inline static double set_responses(const double* c, const double* m, const double* n, double* of_n,
-                                     double* of_m) noexcept;
-  inline void build_row(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
+  CouplingCompliance coupling_of(const ContactTool& tool) const noexcept {
+    return {tool.compliance + floor_, tool.rotational_compliance};
+  }
+  void store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept;
+  void build_row(const ContactTool& tool, int i) noexcept;
   /// Displacement of the point in a row per force on that in another, whose slot is not larger [m/N]. `workspace`: for
   /// two rows at one point.
   PALPATE_ALWAYS_INLINE const Matrix3& between(const TissueView& tissue, const Candidates& points, int i, int j,
@@ -146,12 +145,7 @@ class ContactRows {
   const Matrix3& with_self_compliance(const TissueView& tissue, const Candidates& points, int i, int j,
                                       const Matrix3& compliance, Matrix3& workspace) noexcept;
   inline void update_gaps() noexcept;
-  inline Vector3 moved_point(int i, int pressing) const noexcept;
-  inline Vector3 redirected_displacement(const TissueView& tissue, const Candidates& points, int i) noexcept;
-
-  /// Displacement of the point of row i per unit force on that of row j.
-  Vector3& response(int i, int j) noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
-  const Vector3& response(int i, int j) const noexcept { return response_[at(i) * problem_.stride() + at(j)]; }
+  void store_forces(std::span<ContactTool> tools) noexcept;
 
   int capacity_, count_ = 0;
   ComplementarityProblem problem_;
@@ -165,11 +159,11 @@ class ContactRows {
   PointCompliance compliance_;
   std::vector<Contact> rows_;
   std::vector<Candidate*> candidate_;
-  std::vector<Vector3> response_;
-  std::vector<double> remaining_;         // compliance of a point by its own force, relative to that on a half-space
-  std::vector<Vector3> redirected_;       // by remaining_change: change of a row's force by its new normal
-  std::vector<Vector3> redirected_path_;  // by correct_normals: displacement of a row's point by the redirected parts
-  std::vector<Vector3> shift_;            // displacement of a row's point by the forces redirected since `build`
+  RowCompliance stored_;
+  RowVectors forces_, moved_;        // total forces, and displacements by them
+  std::vector<double> in_axes_;      // a row of the compliance, with friction
+  std::vector<double> remaining_;    // compliance of a point by its own force, relative to that on a half-space
+  std::vector<Vector3> redirected_;  // by remaining_change: change of a row's force by its new normal
   std::array<Vector3, maximum_tools> redirected_of_tool_{};
   std::array<double, maximum_tools> pressing_force_{};
   double remaining_change_ = -1.0;  // negative: not known

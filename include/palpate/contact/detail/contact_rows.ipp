@@ -1,8 +1,10 @@
 // Definitions of contact_rows.hpp.
 #pragma once
 
+#include <palpate/contact/detail/contact_kernels.hpp>
 #include <palpate/contact/detail/contact_rows.hpp>
 #include <palpate/contact/detail/contact_rows_friction.ipp>  // inline functions
+#include <palpate/contact/detail/row_compliance.ipp>         // inline functions
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +20,12 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       compliance_(capacity),
       rows_(at(capacity)),
       candidate_(at(capacity)),
-      response_(problem_.stride() * at(capacity)),
+      stored_(capacity, detail::contact_kernels()),
+      forces_(capacity),
+      moved_(capacity),
+      in_axes_(friction > 0.0 ? 9 * stored_.stride() : 0),
       remaining_(at(capacity)),
       redirected_(at(capacity)),
-      redirected_path_(at(capacity)),
-      shift_(at(capacity)),
       vertices_(3 * at(capacity)),
       slot_(at(vertices), -1) {}
 
@@ -43,21 +46,6 @@ inline void ContactRows::reach(const ContactTool& tool, const Candidate& c, Cont
   row.offset += row.normal.dot(tool.target_rotation * c.core);
 }
 
-/// Displacement of two points, each per force on the other along the normal of its row, m and n; their compliance is c,
-/// 3 x 3. Returns its component along the own normal. Written out so that it stays in registers: half of the work of a
-/// tick with many contacts is done here.
-inline double ContactRows::set_responses(const double* c, const double* m, const double* n, double* of_n,
-                                         double* of_m) noexcept {
-  const double x = c[0] * n[0] + c[3] * n[1] + c[6] * n[2];
-  const double y = c[1] * n[0] + c[4] * n[1] + c[7] * n[2];
-  const double z = c[2] * n[0] + c[5] * n[1] + c[8] * n[2];
-  of_n[0] = x, of_n[1] = y, of_n[2] = z;
-  of_m[0] = c[0] * m[0] + c[1] * m[1] + c[2] * m[2];
-  of_m[1] = c[3] * m[0] + c[4] * m[1] + c[5] * m[2];
-  of_m[2] = c[6] * m[0] + c[7] * m[1] + c[8] * m[2];
-  return m[0] * x + m[1] * y + m[2] * z;
-}
-
 /// Only of points at the same place: out of line, so that what is common is inlined.
 PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView& tissue, const Candidates& points,
                                                                 int i, int j, const Matrix3& compliance,
@@ -74,28 +62,32 @@ PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView
   return workspace;
 }
 
-/// Row i of W and the responses that belong to it.
-inline void ContactRows::build_row(const TissueView& tissue, const Candidates& points, const ContactTool& tool,
-                                   int i) noexcept {
-  const Contact& ci = rows_[at(i)];
+/// The blocks of row i, unless they are as in the last linearisation.
+PALPATE_INLINE void ContactRows::store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept {
   const int p = candidate_[at(i)]->slot;
-  const bool rotates = tool.rotational_compliance > 0.0;
-  Matrix3 same;
-  const double* const m = ci.normal.data();
-  double *column = &problem_.w(0, i), *row = &problem_.w(i, 0);
-  Vector3 *on_j = &response(i, 0), *on_i = &response(0, i);
-  const std::size_t stride = problem_.stride();
-  for (int j = 0; j <= i; ++j, ++on_j, on_i += stride, row += stride) {
-    const Contact& cj = rows_[at(j)];
-    const int q = candidate_[at(j)]->slot;
-    const double* const n = cj.normal.data();
-    double w = p >= q ? set_responses(between(tissue, points, i, j, same).data(), m, n, on_j->data(), on_i->data())
-                      : set_responses(between(tissue, points, j, i, same).data(), n, m, on_i->data(), on_j->data());
-    if (ci.tool == cj.tool) w += (tool.compliance + floor_) * ci.normal.dot(cj.normal);
-    if (rotates && ci.tool == cj.tool)
-      w += tool.rotational_compliance * cross(ci.arm, ci.normal).dot(cross(cj.arm, cj.normal));
-    column[j] = *row = w;
+  const RowCompliance::Key key{compliance_.version(p), candidate_[at(i)]->area};
+  if (stored_.knows(i, key)) return;
+  remaining_[at(i)] = 1.0;
+  stored_.begin_row(i, key);
+  Matrix3 workspace;
+  for (int j = 0; j <= i; ++j)
+    if (p >= candidate_[at(j)]->slot)
+      stored_.set(i, j, between(tissue, points, i, j, workspace));
+    else
+      stored_.set(i, j, between(tissue, points, j, i, workspace).transpose());
+}
+
+/// Row and column i of W, of rows up to i.
+PALPATE_INLINE void ContactRows::build_row(const ContactTool& tool, int i) noexcept {
+  double *const column = &problem_.w(0, i), *row = &problem_.w(i, 0);
+  if (friction_.acts()) {
+    stored_.in_axes(i, coupling_of(tool), in_axes_.data());
+    friction_.set_row(i, in_axes_.data(), stored_.stride());
+    std::copy_n(&in_axes_[8 * stored_.stride()], i + 1, column);
+  } else {
+    stored_.along_normals(i, coupling_of(tool), column);
   }
+  for (int j = 0; j < i; ++j, row += problem_.stride()) *row = column[j];
 }
 
 PALPATE_INLINE void ContactRows::begin_tick(std::uint64_t compliance_revision) noexcept {
@@ -209,17 +201,19 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const Candidate
   has_copies_ = points.subfacet() != nullptr && points.subfacet()->has_copies();
   problem_.resize(count_);
   for (int i = first; i < count_; ++i) {
-    remaining_[at(i)] = 1.0;
     problem_.lambda[at(i)] = 1.0;  // it presses, or would penetrate
-    shift_[at(i)].setZero();
     Contact& ci = rows_[at(i)];
     const ContactTool& tool = tools[at(ci.tool)];
     problem_.bilateral[at(i)] = ci.grasped;
     reach(tool, *candidate_[at(i)], ci);
     problem_.b[at(i)] = free_gap_[at(i)] = ci.normal.dot(tool.target - ci.rest) + ci.offset;
-    build_row(tissue, points, tool, i);
-    if (friction_.acts()) build_friction(tissue, points, tool, i);
+    store_compliance(tissue, points, i);
+    stored_.set_tool(i, ci.tool, ci.arm);
+    stored_.set_axis(i, RowCompliance::normal, ci.normal);
+    if (friction_.acts()) set_friction(tool, i);
   }
+  // After all axes: reading them at once right after they were written one by one is slow.
+  for (int i = first; i < count_; ++i) build_row(tools[at(rows_[at(i)].tool)], i);
   if (!friction_.acts()) return;
   for (int i = 0; i < count_; ++i) pressed_[at(i)] = candidate_[at(i)]->force;
   friction_.begin(count_, pressed_.data());
@@ -252,48 +246,45 @@ PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
   return deepest;
 }
 
-/// The point of row i under the normal forces of the first `pressing` rows [m].
-inline Vector3 ContactRows::moved_point(int i, int pressing) const noexcept {
-  const double *response = this->response(i, 0).data(), *force = problem_.lambda.data();
-  double even[3] = {}, odd[3] = {};  // independent sums, for speed
-  int j = 0;
-  for (; j + 2 <= pressing; j += 2, response += 6)
-    for (int c = 0; c < 3; ++c) {
-      even[c] += force[j] * response[c];
-      odd[c] += force[j + 1] * response[3 + c];
-    }
-  if (j < pressing)
-    for (int c = 0; c < 3; ++c) even[c] += force[j] * response[c];
-  return rows_[at(i)].rest - shift_[at(i)] - Vector3(even[0] + odd[0], even[1] + odd[1], even[2] + odd[2]);
-}
-
-PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,
-                                       SurfaceDisplacement& displacement) noexcept {
-  displacement.clear();
+/// The forces of the solution, of rows and tools.
+PALPATE_INLINE void ContactRows::store_forces(std::span<ContactTool> tools) noexcept {
   pressing_force_.fill(0.0);
   for (ContactTool& tool : tools) {
     tool.force.setZero();
     tool.torque.setZero();
   }
-  if (friction_.acts()) store_friction(tools);
-  int pressing = count_;  // where a solution failed, there are no forces, and the compliance may not be finite
-  while (pressing > 0 && problem_.lambda[at(pressing - 1)] == 0.0) --pressing;
-  double longest = 0.0;
   for (int i = 0; i < count_; ++i) {
     Contact& row = rows_[at(i)];
     Candidate& c = *candidate_[at(i)];
     c.force = row.force = problem_.lambda[at(i)];
     if (friction_.acts()) c.friction = row.friction = friction_.force(i);
     if (c.force == 0.0 && !c.grasped) c.history.known = 0;
-    row.point = moved_point(i, pressing);
-    if (friction_.acts()) row.point -= friction_.displacement(i) - coupling_displacement(tools[at(row.tool)], row);
-    longest = std::max(longest, (row.point - c.point).squaredNorm());
+    const Vector3 total = row.total();
+    forces_.set(i, total);
     if (row.force == 0.0) continue;
     pressing_force_[at(row.tool)] += std::abs(row.force);
     ContactTool& tool = tools[at(row.tool)];
-    const Vector3 total = friction_.acts() ? row.total() : Vector3(row.force * row.normal);
     tool.force += total;
     tool.torque += cross(row.arm, total);
+  }
+  forces_.pad(count_);
+}
+
+PALPATE_INLINE void ContactRows::apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,
+                                       SurfaceDisplacement& displacement) noexcept {
+  displacement.clear();
+  store_forces(tools);
+  int loaded = count_;  // where a solution failed, there are no forces, and the compliance may not be finite
+  while (loaded > 0 && problem_.lambda[at(loaded - 1)] == 0.0) --loaded;
+  stored_.displace(count_, loaded, forces_, moved_);
+  double longest = 0.0;
+  for (int i = 0; i < count_; ++i) {
+    Contact& row = rows_[at(i)];
+    const Candidate& c = *candidate_[at(i)];
+    row.point = row.rest - moved_[i];
+    longest = std::max(longest, (row.point - c.point).squaredNorm());
+    if (row.force == 0.0) continue;
+    const Vector3 total = forces_[i];
     for (std::size_t a = 0; a < 3; ++a)
       if (row.weights[a] > 0.0) displacement.add(row.vertices[a], -row.weights[a] * total, slot_[at(row.vertices[a])]);
     if (const HalfSpacePoint& point = compliance_.half_space_point(c.slot); point.is_known()) {

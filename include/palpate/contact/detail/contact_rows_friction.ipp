@@ -33,45 +33,15 @@ PALPATE_INLINE void ContactRows::inherit_friction(const ContactTool& tool, Candi
   c.stuck_tick = nearest->stuck_tick;
 }
 
-/// Displacement of the tool at one arm per force at another, by its rotation.
-inline Matrix3 ContactRows::rotational_compliance(const ContactTool& tool, const Vector3& at_arm,
-                                                  const Vector3& by_arm) noexcept {
-  Matrix3 displacement;
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r)
-      displacement(r, c) = tool.rotational_compliance * ((r == c ? at_arm.dot(by_arm) : 0.0) - by_arm[r] * at_arm[c]);
-  return displacement;
-}
-
-/// Displacement of the coupling due to friction forces, at the contact point; the rest of CoulombFriction::displacement
-/// is the tissue's.
-inline Vector3 ContactRows::coupling_displacement(const ContactTool& tool, const Contact& row) noexcept {
-  return tool.friction_displacement + cross(tool.friction_rotation, row.arm);
-}
-
-/// Row i of the input of CoulombFriction.
-PALPATE_INLINE void ContactRows::build_friction(const TissueView& tissue, const Candidates& points,
-                                                const ContactTool& tool, int i) noexcept {
+/// The contact of row i for CoulombFriction, and its tangents.
+PALPATE_INLINE void ContactRows::set_friction(const ContactTool& tool, int i) noexcept {
   const Candidate& c = *candidate_[at(i)];
-  const Contact& ci = rows_[at(i)];
-  const bool rotates = tool.rotational_compliance > 0.0;
-  const double coupling = tool.compliance + floor_;
-  const Vector3 drift = tool.target + tool.target_rotation * c.anchor - ci.rest;
-  friction_.set(i, ci.normal, drift, c.friction, !c.grasped && sticks(c));
-  for (int j = 0; j <= i; ++j) {
-    const Contact& cj = rows_[at(j)];
-    const bool same = ci.tool == cj.tool;
-    const int p = c.slot, q = candidate_[at(j)]->slot;
-    Matrix3 workspace, sum;
-    const Matrix3* compliance =
-        p >= q ? &between(tissue, points, i, j, workspace) : &between(tissue, points, j, i, workspace);
-    if (same && rotates) {
-      sum = *compliance +
-            (p >= q ? rotational_compliance(tool, ci.arm, cj.arm) : rotational_compliance(tool, cj.arm, ci.arm));
-      compliance = &sum;
-    }
-    friction_.set(p >= q ? i : j, p >= q ? j : i, *compliance, same ? coupling : 0.0);
-  }
+  const Contact& row = rows_[at(i)];
+  const Vector3 drift = tool.target + tool.target_rotation * c.anchor - row.rest;
+  friction_.set(i, row.normal, drift, c.friction, !c.grasped && sticks(c));
+  const auto [first, second] = friction_.tangents(i);
+  stored_.set_axis(i, RowCompliance::first_tangent, first);
+  stored_.set_axis(i, RowCompliance::second_tangent, second);
 }
 
 /// Gaps without normal forces, with the present friction forces.
@@ -101,20 +71,6 @@ PALPATE_INLINE bool ContactRows::slide() noexcept {
   }
   friction_.press(problem_.lambda.data());
   return solved;
-}
-
-PALPATE_INLINE void ContactRows::store_friction(std::span<ContactTool> tools) const noexcept {
-  for (ContactTool& tool : tools) {
-    tool.friction_displacement.setZero();
-    tool.friction_rotation.setZero();
-  }
-  for (int j = 0; j < count_; ++j) {
-    const Contact& row = rows_[at(j)];
-    ContactTool& tool = tools[at(row.tool)];
-    const Vector3 friction = friction_.force(j);
-    tool.friction_displacement += (tool.compliance + floor_) * friction;
-    tool.friction_rotation += tool.rotational_compliance * cross(row.arm, friction);
-  }
 }
 
 PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexcept {

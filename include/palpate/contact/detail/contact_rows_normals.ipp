@@ -36,34 +36,19 @@ PALPATE_INLINE double ContactRows::estimate_change(std::span<const ContactTool> 
   return largest_force > 0.0 && push > 0.0 ? largest_change / largest_force + gap / push : infinity;
 }
 
-/// The displacement of the point of row i by the redirected parts of the forces.
-inline Vector3 ContactRows::redirected_displacement(const TissueView& tissue, const Candidates& points,
-                                                    int i) noexcept {
-  Vector3 displacement = Vector3::Zero();
-  Matrix3 workspace;
-  const int p = candidate_[at(i)]->slot;
-  for (int j = 0; j < count_; ++j) {
-    if (rows_[at(j)].force == 0.0) continue;
-    if (p >= candidate_[at(j)]->slot)
-      displacement.noalias() += between(tissue, points, i, j, workspace) * redirected_[at(j)];
-    else
-      displacement.noalias() += between(tissue, points, j, i, workspace).transpose() * redirected_[at(j)];
-  }
-  return displacement;
-}
-
 /// The redirected forces move points and proxies, which rotates the normals further. The ratio of the two rotations,
 /// averaged over the rows, extrapolates the normals to their fixed point.
-PALPATE_INLINE bool ContactRows::correct_normals(const TissueView& tissue, const Candidates& points,
-                                                 std::span<const ContactTool> tools) noexcept {
+PALPATE_INLINE bool ContactRows::correct_normals(std::span<const ContactTool> tools) noexcept {
   const auto relative_path = [&](const ContactTool& tool, int i) -> Vector3 {
-    return (tool.compliance + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + redirected_path_[at(i)];
+    return (tool.compliance + floor_) * redirected_of_tool_[at(rows_[at(i)].tool)] + moved_[i];
   };
+  for (int i = 0; i < count_; ++i) forces_.set(i, redirected_[at(i)]);
+  forces_.pad(count_);
+  stored_.displace(count_, count_, forces_, moved_);
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < count_; ++i) {
-    const ContactTool& tool = tools[at(rows_[at(i)].tool)];
-    redirected_path_[at(i)] = redirected_displacement(tissue, points, i);
     if (rows_[at(i)].force == 0.0) continue;
+    const ContactTool& tool = tools[at(rows_[at(i)].tool)];
     back += redirected_[at(i)].dot(relative_path(tool, i)) / tool.radius;
     changed += redirected_[at(i)].squaredNorm() / rows_[at(i)].force;
   }
@@ -74,7 +59,6 @@ PALPATE_INLINE bool ContactRows::correct_normals(const TissueView& tissue, const
     const ContactTool& tool = tools[at(row.tool)];
     const Vector3 arm = tool.goal(floor_) - row.point;
     problem_.b[at(i)] += (arm + factor * relative_path(tool, i)).norm() - tool.radius - problem_.gap(i);
-    shift_[at(i)] += factor * redirected_path_[at(i)];
     row.normal = (row.normal + factor * (arm.normalized() - row.normal)).normalized();
     row.arm = -tool.radius * row.normal;
     candidate_[at(i)]->history.used = row.normal;

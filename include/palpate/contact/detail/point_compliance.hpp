@@ -36,6 +36,8 @@ class PointCompliance {
     return point_[at(p)].is_known() &&
            (p == q || (point_[at(q)].is_known() && is_same_place(point_[at(p)], point_[at(q)])));
   }
+  /// Another number for every point and state of the tissue.
+  std::uint64_t version(int slot) const noexcept { return version_[at(slot)]; }
   /// TissueView::half_space_map_at of that point.
   const Matrix3& map(int slot) const noexcept { return map_[at(slot)]; }
 

@@ -17,6 +17,7 @@ struct PointLoad {
   double area = 0.0;                ///< that the point stands for [m^2]
   Vector3 moved = Vector3::Zero();  ///< displacement of the point [m]
   Vector3 force = Vector3::Zero();  ///< [N], in the axes of the SubfacetCompliance
+  double magnitude = 0.0;           ///< of the force [N]; set by `add_load`
 };
 
 /// Forces on vertices, and the displacement of any vertex under them, computed on request and cached until the forces
@@ -118,10 +119,13 @@ class SurfaceDisplacement {
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
   /// Of the points with loads [m].
   double longest_path() const noexcept;
-  /// What is added to the displacement of the mesh at a known point [m], not rotated. `number`: of its sample; -1 where
-  /// it is not known. O(loads).
-  Vector3 dent(const SubfacetCompliance& subfacet, const ContactSample& sample, const HalfSpacePoint& point,
-               int number) noexcept;
+  /// Displacement of the mesh at a point [m].
+  inline Vector3 of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept;
+  /// That of a vertex without what the mesh shows of the half-space [m].
+  inline const Vector3& smooth(const TissueView& tissue, const SubfacetCompliance& subfacet, int vertex) noexcept;
+  /// Displacement of the half-space at a known point [m], not rotated. `number`: of its sample; -1 where it is not
+  /// known. O(loads).
+  Vector3 of_half_space(const SubfacetCompliance& subfacet, const HalfSpacePoint& point, int number) noexcept;
 
   std::vector<VertexForce> forces_;
   std::vector<PointLoad> loads_;
@@ -130,8 +134,8 @@ class SurfaceDisplacement {
   std::vector<int> sample_;              // of the loads
   std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
   std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;
-  std::vector<Vector3> displacement_, dented_;
-  std::vector<std::uint64_t> stamp_, dented_stamp_;
+  std::vector<Vector3> displacement_, dented_, smooth_;
+  std::vector<std::uint64_t> stamp_, dented_stamp_, smooth_stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 2, revision_ = 0, dent_stamp_ = 0;
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance

@@ -1,9 +1,11 @@
 // Definitions of surface_displacement.hpp.
 #pragma once
 
+#include <palpate/contact/detail/contact_kernels.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -11,7 +13,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity, int number)
     : forces_(static_cast<std::size_t>(capacity)),
       loads_(static_cast<std::size_t>(capacity)),
-      half_space_(capacity),
+      half_space_(capacity, detail::contact_kernels()),
       sample_(static_cast<std::size_t>(capacity), -1),
       shown_(static_cast<std::size_t>(vertices)),
       loaded_(static_cast<std::size_t>(vertices)),
@@ -19,8 +21,10 @@ PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capaci
       loaded_stamp_(static_cast<std::size_t>(vertices), 0),
       displacement_(static_cast<std::size_t>(vertices)),
       dented_(static_cast<std::size_t>(vertices)),
+      smooth_(static_cast<std::size_t>(vertices)),
       stamp_(static_cast<std::size_t>(vertices), 0),
       dented_stamp_(static_cast<std::size_t>(vertices), 0),
+      smooth_stamp_(static_cast<std::size_t>(vertices), 0),
       slot_(static_cast<std::size_t>(vertices), -1),
       generation_(2 + static_cast<std::uint64_t>(number)) {}
 
@@ -33,6 +37,8 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
   stamp_.swap(fresh.stamp_);
   dented_.swap(fresh.dented_);
   dented_stamp_.swap(fresh.dented_stamp_);
+  smooth_.swap(fresh.smooth_);
+  smooth_stamp_.swap(fresh.smooth_stamp_);
   slot_.swap(fresh.slot_);
   shown_.swap(fresh.shown_);
   loaded_.swap(fresh.loaded_);
@@ -60,7 +66,13 @@ PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const C
   if (load_count_ == static_cast<int>(loads_.size())) return;
   half_space_.set(load_count_, load.point, load.force);
   sample_[static_cast<std::size_t>(load_count_)] = load.sample;
-  loads_[static_cast<std::size_t>(load_count_++)] = load;
+  PointLoad& own = loads_[static_cast<std::size_t>(load_count_++)];
+  own.sample = load.sample;  // member by member: GCC copies the whole with a slow instruction
+  own.point = load.point;
+  own.area = load.area;
+  own.moved = load.moved;
+  own.force = load.force;
+  own.magnitude = load.force.norm();
   for (std::size_t a = 0; a < 3; ++a) {
     if (sample.weights[a] == 0.0) continue;
     const auto v = static_cast<std::size_t>(sample.vertices[a]);
@@ -81,11 +93,23 @@ PALPATE_INLINE const Vector3& SurfaceDisplacement::shown(const SubfacetComplianc
   return u;
 }
 
-PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfacet, const ContactSample& sample,
-                                                 const HalfSpacePoint& point, int number) noexcept {
+inline Vector3 SurfaceDisplacement::of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept {
   Vector3 u = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+    if (sample.weights[a] != 0.0) u += sample.weights[a] * at(tissue, sample.vertices[a]);
+  return u;
+}
+
+inline const Vector3& SurfaceDisplacement::smooth(const TissueView& tissue, const SubfacetCompliance& subfacet,
+                                                  int vertex) noexcept {
+  const auto i = static_cast<std::size_t>(vertex);
+  if (std::exchange(smooth_stamp_[i], generation_) == generation_) return smooth_[i];
+  return smooth_[i] = at(tissue, vertex) - shown(subfacet, vertex);
+}
+
+PALPATE_INLINE Vector3 SurfaceDisplacement::of_half_space(const SubfacetCompliance& subfacet,
+                                                          const HalfSpacePoint& point, int number) noexcept {
+  Vector3 u = Vector3::Zero();
   half_space_.add_displacement(load_count_, point, u);
   const bool by_place = number < 0 || subfacet.has_copies();
   for (std::size_t i = 0; i < static_cast<std::size_t>(load_count_); ++i)
@@ -97,24 +121,25 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::dent(const SubfacetCompliance& subfa
 PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, const SubfacetCompliance& subfacet,
                                                      const ContactSample& sample, const HalfSpacePoint& point,
                                                      int number) noexcept {
-  Vector3 mesh = Vector3::Zero();
-  for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] != 0.0) mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
-  if (load_count_ == 0) return mesh;
-  const Vector3 added = dent(subfacet, sample, point, number);
-  return tissue.has_half_space_map() ? Vector3(mesh + tissue.half_space_map_at(sample) * added) : Vector3(mesh + added);
+  const Vector3 u = without_half_space(tissue, subfacet, sample);
+  if (load_count_ == 0) return u;
+  const Vector3 added = of_half_space(subfacet, point, number);
+  return tissue.has_half_space_map() ? Vector3(u + tissue.half_space_map_at(sample) * added) : Vector3(u + added);
 }
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView& tissue,
                                                                const SubfacetCompliance& subfacet,
                                                                const ContactSample& sample) noexcept {
-  Vector3 mesh = Vector3::Zero(), added = Vector3::Zero();
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (sample.weights[a] == 0.0) continue;
-    mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
-    if (load_count_ > 0) added -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  if (load_count_ == 0) return of_mesh(tissue, sample);
+  Vector3 u = Vector3::Zero();
+  if (!tissue.has_half_space_map()) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (sample.weights[a] != 0.0) u += sample.weights[a] * smooth(tissue, subfacet, sample.vertices[a]);
+    return u;
   }
-  return tissue.has_half_space_map() ? Vector3(mesh + tissue.half_space_map_at(sample) * added) : Vector3(mesh + added);
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  return of_mesh(tissue, sample) + tissue.half_space_map_at(sample) * u;
 }
 
 /// Loads of less than a twentieth of the largest do not count for the directions: points at the rim of a deep print.
@@ -122,27 +147,23 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
                                                        const ContactSamples& samples) noexcept {
   constexpr double small = 0.05;
   if (std::exchange(dent_stamp_, generation_) == generation_) return;
-  largest_dent_ = largest_half_space_ = 0.0;
   pressed_normal_.setZero();
-  only_presses_ = true;
-  double largest = 0.0;
+  double dent = 0.0, half_space = 0.0, largest = 0.0;  // the first two squared
   const std::span<const PointLoad> loads(loads_.data(), static_cast<std::size_t>(load_count_));
   for (const PointLoad& load : loads) {
     const ContactSample& sample = samples[load.sample];
-    Vector3 mesh = Vector3::Zero();
-    for (std::size_t a = 0; a < 3; ++a)
-      if (sample.weights[a] != 0.0) mesh += sample.weights[a] * at(tissue, sample.vertices[a]);
-    largest_dent_ = std::max(largest_dent_, (load.moved - mesh).norm());
-    const Vector3 moved = load.moved - without_half_space(tissue, subfacet, sample);
-    largest_half_space_ = std::max(largest_half_space_, moved.norm());
-    largest = std::max(largest, load.force.norm());
-    pressed_normal_ += load.force.norm() * load.point.normal;
+    dent = std::max(dent, (load.moved - of_mesh(tissue, sample)).squaredNorm());
+    half_space = std::max(half_space, (load.moved - without_half_space(tissue, subfacet, sample)).squaredNorm());
+    largest = std::max(largest, load.magnitude);
+    pressed_normal_ += load.magnitude * load.point.normal;
   }
+  largest_dent_ = std::sqrt(dent);
+  largest_half_space_ = std::sqrt(half_space);
   pressed_normal_.normalize();
-  for (const PointLoad& load : loads)
-    if (const double force = load.force.norm(); force > small * largest)
-      only_presses_ = only_presses_ && -load.force.dot(load.point.normal) > aligned * force &&
-                      load.point.normal.dot(pressed_normal_) > aligned;
+  only_presses_ = std::ranges::all_of(loads, [&](const PointLoad& load) {
+    return !(load.magnitude > small * largest) || (-load.force.dot(load.point.normal) > aligned * load.magnitude &&
+                                                   load.point.normal.dot(pressed_normal_) > aligned);
+  });
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a

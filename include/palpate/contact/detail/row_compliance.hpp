@@ -1,0 +1,115 @@
+// The compliance between the points of the rows of a contact problem, stored for sums over many rows.
+#pragma once
+
+#include <palpate/contact/detail/contact_kernels_here.hpp>
+#include <palpate/core/types.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+using any_flags::CouplingCompliance;
+
+/// A vector per row, stored as the kernels read them.
+class RowVectors {
+ public:
+  /// Zeros for `capacity` rows. Allocates; for set-up.
+  explicit RowVectors(int capacity) : numbers_(3 * lanes * any_flags::contact_groups(capacity), 0.0) {}
+
+  void set(int i, const Vector3& v) noexcept {
+    double* const to = &numbers_[first(i)];
+    to[0] = v[0], to[lanes] = v[1], to[2 * lanes] = v[2];
+  }
+  Vector3 operator[](int i) const noexcept {
+    const double* const from = &numbers_[first(i)];
+    return {from[0], from[lanes], from[2 * lanes]};
+  }
+  double* data() noexcept { return numbers_.data(); }
+  const double* data() const noexcept { return numbers_.data(); }
+  /// Sets the rows to zero that share a group with the last of `rows`.
+  void pad(int rows) noexcept {
+    for (int i = rows; i % any_flags::contacts_at_once != 0; ++i) set(i, Vector3(0.0, 0.0, 0.0));
+  }
+
+ private:
+  static constexpr std::size_t lanes = any_flags::contacts_at_once;
+  static std::size_t first(int i) noexcept {
+    return static_cast<std::size_t>(i) / lanes * 3 * lanes + static_cast<std::size_t>(i) % lanes;
+  }
+  std::vector<double> numbers_;
+};
+
+/// Blocks A_ij, the displacement of the point of row i per force on that of row j, for j <= i: A_ji is the transpose.
+/// They depend on the points only, so that they stay from tick to tick while the first rows have the same points. What
+/// depends on normals and forces is computed from them for several rows at a time. No allocation after construction.
+class RowCompliance {
+ public:
+  /// What a row's blocks depend on: the point in a slot of PointCompliance and the area that it stands for.
+  struct Key {
+    std::uint64_t version = 0;
+    double area = 0.0;
+    friend bool operator==(const Key& a, const Key& b) noexcept { return a.version == b.version && a.area == b.area; }
+  };
+  /// The axes of a contact: two tangents, where there is friction, and the normal.
+  enum Axis { first_tangent, second_tangent, normal };
+
+  /// Allocates; for set-up.
+  RowCompliance(int capacity, const any_flags::ContactKernels& kernels);
+
+  /// Doubles between two components of a row in axes: not less than the capacity, whole groups.
+  std::size_t stride() const noexcept { return tools_.size(); }
+  /// Whether the blocks of a row are stored. If not, it must be begun and all of its blocks set: those of further rows
+  /// are then unknown.
+  bool knows(int i, const Key& key) const noexcept { return i < known_ && key_[at(i)] == key; }
+  void begin_row(int i, const Key& key) noexcept;
+  /// A_ij, j <= i.
+  inline void set(int i, int j, const Matrix3& block) noexcept;
+
+  /// The tool of a row, and where its contact point is from the proxy [m].
+  void set_tool(int i, int tool, const Vector3& arm) noexcept {
+    tools_[at(i)] = static_cast<double>(tool);
+    arms_.set(i, arm);
+  }
+  void set_axis(int i, Axis axis, const Vector3& direction) noexcept { axes_[axis].set(i, direction); }
+
+  /// w[j] = n_i . B n_j for j <= i with the normals n and B, the block A_ij and the coupling of a tool that both rows
+  /// have. Writes whole groups: up to `stride` numbers. About 30 flops per row.
+  void along_normals(int i, const CouplingCompliance& coupling, double* w) noexcept {
+    kernels_->along_normals(arrays(), i, coupling, w);
+  }
+  /// a_i . B b_j for all axes a of i and b of j <= i: at w[(3 a + b) stride + j]. About 100 flops per row.
+  void in_axes(int i, const CouplingCompliance& coupling, double* w) noexcept {
+    kernels_->in_axes(arrays(), i, coupling, stride(), w);
+  }
+  /// The displacements of the points of `rows` rows under the forces on the first `loaded` of them, without coupling
+  /// [m]. The forces are padded. About 36 flops per pair of rows.
+  void displace(int rows, int loaded, const RowVectors& forces, RowVectors& displacements) noexcept {
+    kernels_->displace(arrays(), rows, loaded, forces.data(), displacements.data());
+  }
+
+ private:
+  static constexpr std::size_t lanes = any_flags::contacts_at_once;
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  any_flags::RowBlocks arrays() noexcept {
+    return {blocks_.data(), first_.data(), diagonal_.data(), {axes_[0].data(), axes_[1].data(), axes_[2].data()},
+            arms_.data(),   tools_.data(), sums_.data()};
+  }
+
+  const any_flags::ContactKernels* kernels_;
+  int known_ = 0;
+  std::vector<Key> key_;
+  std::vector<std::size_t> first_;  // group of a row's blocks
+  std::vector<double> blocks_;      // by rows, groups of j < i; zero from the diagonal on
+  std::vector<double> diagonal_;
+  std::array<RowVectors, 3> axes_;
+  RowVectors arms_;
+  std::vector<double> tools_, sums_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/row_compliance.ipp>
+#endif
