@@ -1,6 +1,6 @@
 // Sums over the rows of the compliance, with the kernels of every processor, against sums over blocks.
 #include <palpate/contact/detail/contact_kernels.hpp>
-#include <palpate/contact/detail/row_compliance.ipp>  // its inline function
+#include <palpate/contact/detail/row_compliance.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

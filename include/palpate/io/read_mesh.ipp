@@ -1,6 +1,7 @@
 // Definitions of read_mesh.hpp.
 #pragma once
 
+#include <palpate/io/detail/labels.hpp>
 #include <palpate/io/detail/vtk_numbers.hpp>
 #include <palpate/io/file.hpp>
 #include <palpate/io/read_mesh.hpp>

@@ -4,7 +4,6 @@
 #include <palpate/contact/detail/contact_kernels.hpp>
 #include <palpate/contact/detail/contact_rows.hpp>
 #include <palpate/contact/detail/contact_rows_friction.ipp>  // inline functions
-#include <palpate/contact/detail/row_compliance.ipp>         // inline functions
 
 #include <algorithm>
 #include <cmath>

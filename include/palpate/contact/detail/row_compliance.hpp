@@ -4,6 +4,7 @@
 #include <palpate/contact/detail/contact_kernels_here.hpp>
 #include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -56,16 +57,42 @@ class RowCompliance {
   enum Axis { first_tangent, second_tangent, normal };
 
   /// Allocates; for set-up.
-  RowCompliance(int capacity, const any_flags::ContactKernels& kernels);
+  RowCompliance(int capacity, const any_flags::ContactKernels& kernels)
+      : kernels_(&kernels),
+        key_(at(capacity)),
+        first_(at(capacity)),
+        diagonal_(9 * at(capacity)),
+        axes_{RowVectors(capacity), RowVectors(capacity), RowVectors(capacity)},
+        arms_(capacity),
+        tools_(any_flags::contact_groups(capacity) * lanes),
+        sums_(3 * at(capacity)) {
+    std::size_t groups = 0;
+    for (int i = 0; i < capacity; ++i) {
+      first_[at(i)] = groups;
+      groups += any_flags::contact_groups(i);
+    }
+    blocks_.resize(9 * lanes * groups);
+  }
 
   /// Doubles between two components of a row in axes: not less than the capacity, whole groups.
   std::size_t stride() const noexcept { return tools_.size(); }
   /// Whether the blocks of a row are stored. If not, it must be begun and all of its blocks set: those of further rows
   /// are then unknown.
   bool knows(int i, const Key& key) const noexcept { return i < known_ && key_[at(i)] == key; }
-  void begin_row(int i, const Key& key) noexcept;
+  void begin_row(int i, const Key& key) noexcept {
+    key_[at(i)] = key;
+    known_ = i + 1;
+    if (i > 0) std::fill_n(&blocks_[9 * lanes * (first_[at(i)] + at(i - 1) / lanes)], 9 * lanes, 0.0);
+  }
   /// A_ij, j <= i.
-  inline void set(int i, int j, const Matrix3& block) noexcept;
+  void set(int i, int j, const Matrix3& block) noexcept {
+    if (i == j) {
+      std::copy_n(block.data(), 9, &diagonal_[9 * at(i)]);
+      return;
+    }
+    double* const to = &blocks_[9 * lanes * (first_[at(i)] + at(j) / lanes) + at(j) % lanes];
+    for (std::size_t c = 0; c < 9; ++c) to[c * lanes] = block.data()[c];
+  }
 
   /// The tool of a row, and where its contact point is from the proxy [m].
   void set_tool(int i, int tool, const Vector3& arm) noexcept {
@@ -109,7 +136,3 @@ class RowCompliance {
 };
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/contact/detail/row_compliance.ipp>
-#endif
