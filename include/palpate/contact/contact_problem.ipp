@@ -589,8 +589,18 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   feedback_ = of_lifted_ = most_of_lifted_ = 0.0;
 }
 
-/// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others.
-/// Pads leave half of the rows to points that press. Where other vertices are pinned than before, points have moved.
+/// The middle of the points that a tool pressed in the last solution, weighted by their forces; zero without force [m].
+inline Vector3 ContactProblem::middle_of_print(std::size_t t) const noexcept {
+  Vector3 sum = Vector3::Zero();
+  double all = 0.0;
+  for (const Contact& c : rows_.contacts())
+    if (c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0) sum += c.force * c.point, all += c.force;
+  return all > 0.0 ? Vector3(sum / all) : sum;
+}
+
+/// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others. Of
+/// the points that press, all of which are at the tool, it is the one in the middle. Pads leave half of the rows to
+/// points that press. Where other vertices are pinned than before, points have moved.
 PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
   std::array<bool, maximum_tools> takes_pad{};
   for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -600,11 +610,16 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
     constexpr double grasped_spacing = 0.25;  // radii; a single point holds at least so much of the surface
+    const Vector3 middle = middle_of_print(t);
     Candidate* nearest = nullptr;
+    std::pair<bool, double> least{true, infinity};
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-      if (c.facing && c.gap <= Grasp::reach * tool.radius && (nearest == nullptr || c.gap < nearest->gap)) nearest = &c;
+      if (!c.facing || !(c.gap <= Grasp::reach * tool.radius)) continue;
+      const bool presses = c.force > 0.0;
+      const std::pair order(!presses, presses ? (c.point - middle).norm() : c.gap);
+      if (order < least) least = order, nearest = &c;
     }
     if (nearest == nullptr) continue;
     nearest->area = std::max({nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)),

@@ -81,7 +81,11 @@ class SurfaceDisplacement {
   Vector3 without_half_space(const TissueView& tissue, const SubfacetCompliance& subfacet,
                              const ContactSample& sample) noexcept;
   /// What the mesh shows of the half-space at a vertex under the loads [m]. O(1) once it is known.
-  const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
+  const Vector3& shown(const SubfacetCompliance& subfacet, int vertex) noexcept {
+    const auto i = static_cast<std::size_t>(vertex);
+    if (shown_stamp_[i] != load_generation_) compute_shown(subfacet, vertex);
+    return shown_[i];
+  }
   /// How far outward the half-space may move a point with this normal at rest from there [m]. Loads that press on a
   /// surface that faces as the point does move it inward: a tenth of the largest dent is allowed, for what loads along
   /// the surface move beside them. Where loads pull, are more along the surface than into it, or press walls that face
@@ -119,10 +123,9 @@ class SurfaceDisplacement {
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
   /// Of the points with loads [m].
   double longest_path() const noexcept;
+  void compute_shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
   /// Displacement of the mesh at a point [m].
   inline Vector3 of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept;
-  /// That of a vertex without what the mesh shows of the half-space [m].
-  inline const Vector3& smooth(const TissueView& tissue, const SubfacetCompliance& subfacet, int vertex) noexcept;
   /// Displacement of the half-space at a known point [m], not rotated. `number`: of its sample; -1 where it is not
   /// known. O(loads).
   Vector3 of_half_space(const SubfacetCompliance& subfacet, const HalfSpacePoint& point, int number) noexcept;
@@ -134,8 +137,8 @@ class SurfaceDisplacement {
   std::vector<int> sample_;              // of the loads
   std::vector<Vector3> shown_, loaded_;  // loaded: the parts of the loads on a vertex
   std::vector<std::uint64_t> shown_stamp_, loaded_stamp_;
-  std::vector<Vector3> displacement_, dented_, smooth_;
-  std::vector<std::uint64_t> stamp_, dented_stamp_, smooth_stamp_;
+  std::vector<Vector3> displacement_, dented_;
+  std::vector<std::uint64_t> stamp_, dented_stamp_;
   std::vector<int> slot_;  // of a vertex's force; -1 between calls
   std::uint64_t generation_ = 2, revision_ = 0, dent_stamp_ = 0;
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance

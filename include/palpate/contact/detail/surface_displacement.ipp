@@ -21,10 +21,8 @@ PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capaci
       loaded_stamp_(static_cast<std::size_t>(vertices), 0),
       displacement_(static_cast<std::size_t>(vertices)),
       dented_(static_cast<std::size_t>(vertices)),
-      smooth_(static_cast<std::size_t>(vertices)),
       stamp_(static_cast<std::size_t>(vertices), 0),
       dented_stamp_(static_cast<std::size_t>(vertices), 0),
-      smooth_stamp_(static_cast<std::size_t>(vertices), 0),
       slot_(static_cast<std::size_t>(vertices), -1),
       generation_(2 + static_cast<std::uint64_t>(number)) {}
 
@@ -37,8 +35,6 @@ PALPATE_INLINE void SurfaceDisplacement::move_to(SurfaceDisplacement& fresh) noe
   stamp_.swap(fresh.stamp_);
   dented_.swap(fresh.dented_);
   dented_stamp_.swap(fresh.dented_stamp_);
-  smooth_.swap(fresh.smooth_);
-  smooth_stamp_.swap(fresh.smooth_stamp_);
   slot_.swap(fresh.slot_);
   shown_.swap(fresh.shown_);
   loaded_.swap(fresh.loaded_);
@@ -81,16 +77,15 @@ PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const C
   }
 }
 
-PALPATE_INLINE const Vector3& SurfaceDisplacement::shown(const SubfacetCompliance& subfacet, int vertex) noexcept {
+PALPATE_INLINE void SurfaceDisplacement::compute_shown(const SubfacetCompliance& subfacet, int vertex) noexcept {
   const auto i = static_cast<std::size_t>(vertex);
-  if (std::exchange(shown_stamp_[i], load_generation_) == load_generation_) return shown_[i];
+  shown_stamp_[i] = load_generation_;
   Vector3& u = shown_[i];
   u.setZero();
   for (const SubfacetCompliance::Block& block : subfacet.blocks(vertex)) {
     const auto j = static_cast<std::size_t>(block.vertex);
     if (loaded_stamp_[j] == load_generation_) u.noalias() += block.shown.transpose() * loaded_[j];
   }
-  return u;
 }
 
 inline Vector3 SurfaceDisplacement::of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept {
@@ -98,13 +93,6 @@ inline Vector3 SurfaceDisplacement::of_mesh(const TissueView& tissue, const Cont
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] != 0.0) u += sample.weights[a] * at(tissue, sample.vertices[a]);
   return u;
-}
-
-inline const Vector3& SurfaceDisplacement::smooth(const TissueView& tissue, const SubfacetCompliance& subfacet,
-                                                  int vertex) noexcept {
-  const auto i = static_cast<std::size_t>(vertex);
-  if (std::exchange(smooth_stamp_[i], generation_) == generation_) return smooth_[i];
-  return smooth_[i] = at(tissue, vertex) - shown(subfacet, vertex);
 }
 
 PALPATE_INLINE Vector3 SurfaceDisplacement::of_half_space(const SubfacetCompliance& subfacet,
@@ -130,16 +118,12 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::at_point(const TissueView& tissue, c
 PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView& tissue,
                                                                const SubfacetCompliance& subfacet,
                                                                const ContactSample& sample) noexcept {
-  if (load_count_ == 0) return of_mesh(tissue, sample);
-  Vector3 u = Vector3::Zero();
-  if (!tissue.has_half_space_map()) {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (sample.weights[a] != 0.0) u += sample.weights[a] * smooth(tissue, subfacet, sample.vertices[a]);
-    return u;
-  }
+  const Vector3 mesh = of_mesh(tissue, sample);
+  if (load_count_ == 0) return mesh;
+  Vector3 added = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
-    if (sample.weights[a] != 0.0) u -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
-  return of_mesh(tissue, sample) + tissue.half_space_map_at(sample) * u;
+    if (sample.weights[a] != 0.0) added -= sample.weights[a] * shown(subfacet, sample.vertices[a]);
+  return tissue.has_half_space_map() ? Vector3(mesh + tissue.half_space_map_at(sample) * added) : Vector3(mesh + added);
 }
 
 /// Loads of less than a twentieth of the largest do not count for the directions: points at the rim of a deep print.
