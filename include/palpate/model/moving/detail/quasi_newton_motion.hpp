@@ -25,7 +25,7 @@ struct QuasiNewtonParameters {
   /// that of a slow hand. The body must be constrained.
   bool inertia = true;
   double mass_damping = 0.0;    ///< alpha of the mass-proportional damping [1/s]
-  int maximum_iterations = 30;  ///< per step; each takes one solve and usually one evaluation of the force
+  int maximum_iterations = 60;  ///< per step; each takes one solve and usually one evaluation of the force
   double tolerance = 1e-3;      ///< of the residual force, relative to the largest of the forces
   int memory = 6;               ///< pairs of L-BFGS
   /// Elements up to this distance from the touchable nodes, along element edges [m], are at large strain. The others
