@@ -5,8 +5,8 @@
 #                             (benchmarks/compile_time/programs/unit.cpp)
 # <program>_<mode>_functions  functions of palpate and Eigen compiled in the program itself (-O0: nothing inlined)
 set(readme_compiled_percent 115)
-# 180 before the reader of Medit files.
-set(readme_header_only_percent 183)
+# 180 before the reader of Medit files; 183 before the compliance of rows for several rows at a time.
+set(readme_header_only_percent 184)
 set(readme_compiled_functions 1550)
 # 14000 before convex tools, the dent of coarse facets and the search of lost tools on the deformed surface; 15000 before
 # the error bars of ticks and the slits that a blade remembers; 15300 before the parts of the error bar in ticks,
@@ -18,7 +18,7 @@ set(readme_compiled_functions 1550)
 # the mesh, and points in levels.
 set(readme_header_only_functions 22000)
 set(mesh_only_compiled_percent 115)
-set(mesh_only_header_only_percent 183)  # as above
+set(mesh_only_header_only_percent 184)  # as above
 set(mesh_only_compiled_functions 140)
 # Points that are added to the percentages above with other compilers than g++ 12: the headers of their standard library
 # are of other length (188 % and 118 % with g++ 14).

@@ -612,14 +612,15 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     constexpr double grasped_spacing = 0.25;  // radii; a single point holds at least so much of the surface
     const Vector3 middle = middle_of_print(t);
     Candidate* nearest = nullptr;
-    std::pair<bool, double> least{true, infinity};
+    bool any_presses = false;
+    double least = infinity;
     for (Candidate& c : candidates_.items()) {
       if (c.tool != static_cast<int>(t)) continue;
       if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
       if (!c.facing || !(c.gap <= Grasp::reach * tool.radius)) continue;
       const bool presses = c.force > 0.0;
-      const std::pair order(!presses, presses ? (c.point - middle).norm() : c.gap);
-      if (order < least) least = order, nearest = &c;
+      const double far = presses ? (c.point - middle).norm() : c.gap;
+      if (presses == any_presses ? far < least : presses) any_presses = presses, least = far, nearest = &c;
     }
     if (nearest == nullptr) continue;
     nearest->area = std::max({nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)),

@@ -61,10 +61,16 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
   sort_blocks();
 }
 
+/// By insertion: nearly all are in order.
 PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
   for (std::size_t v = 0; v + 1 < first_.size(); ++v)
-    std::sort(blocks_.begin() + first_[v], blocks_.begin() + first_[v + 1],
-              [](const Block& a, const Block& b) { return a.vertex < b.vertex; });
+    for (std::size_t k = at(first_[v]) + 1; k < at(first_[v + 1]); ++k) {
+      const Block block = blocks_[k];
+      std::size_t place = k;
+      for (; place > at(first_[v]) && blocks_[place - 1].vertex > block.vertex; --place)
+        blocks_[place] = blocks_[place - 1];
+      blocks_[place] = block;
+    }
 }
 
 PALPATE_INLINE bool SubfacetCompliance::knows(const ContactSample& sample) const noexcept {
@@ -111,13 +117,17 @@ PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const ContactSample& p, const C
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t b = 0; b < 3; ++b) {
     if (q.weights[b] == 0.0) continue;
-    const std::span<const Block> own = blocks(q.vertices[b]);
     for (std::size_t a = 0; a < 3; ++a) {
       if (!(p.weights[a] > 0.0)) continue;
-      const auto found = std::lower_bound(own.begin(), own.end(), p.vertices[a],
-                                          [](const Block& block, int vertex) { return block.vertex < vertex; });
-      if (found != own.end() && found->vertex == p.vertices[a])
-        sum.noalias() += (p.weights[a] * q.weights[b]) * found->shown;
+      std::size_t begin = at(first_[at(q.vertices[b])]), end = at(first_[at(q.vertices[b]) + 1]);
+      const std::size_t last = end;
+      while (begin < end) {
+        const std::size_t middle = (begin + end) / 2;
+        (blocks_[middle].vertex < p.vertices[a] ? begin : end) =
+            blocks_[middle].vertex < p.vertices[a] ? middle + 1 : middle;
+      }
+      if (begin < last && blocks_[begin].vertex == p.vertices[a])
+        sum.noalias() += (p.weights[a] * q.weights[b]) * blocks_[begin].shown;
     }
   }
   return sum;

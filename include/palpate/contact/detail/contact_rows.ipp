@@ -82,7 +82,7 @@ PALPATE_INLINE void ContactRows::build_row(const ContactTool& tool, int i) noexc
   if (friction_.acts()) {
     stored_.in_axes(i, coupling_of(tool), in_axes_.data());
     friction_.set_row(i, in_axes_.data(), stored_.stride());
-    std::copy_n(&in_axes_[8 * stored_.stride()], i + 1, column);
+    for (int j = 0; j <= i; ++j) column[j] = in_axes_[8 * stored_.stride() + at(j)];
   } else {
     stored_.along_normals(i, coupling_of(tool), column);
   }

@@ -4,7 +4,6 @@
 #include <palpate/contact/detail/contact_kernels_here.hpp>
 #include <palpate/core/types.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -51,7 +50,6 @@ class RowCompliance {
   struct Key {
     std::uint64_t version = 0;
     double area = 0.0;
-    friend bool operator==(const Key& a, const Key& b) noexcept { return a.version == b.version && a.area == b.area; }
   };
   /// The axes of a contact: two tangents, where there is friction, and the normal.
   enum Axis { first_tangent, second_tangent, normal };
@@ -59,7 +57,8 @@ class RowCompliance {
   /// Allocates; for set-up.
   RowCompliance(int capacity, const any_flags::ContactKernels& kernels)
       : kernels_(&kernels),
-        key_(at(capacity)),
+        versions_(at(capacity)),
+        areas_(at(capacity)),
         first_(at(capacity)),
         diagonal_(9 * at(capacity)),
         axes_{RowVectors(capacity), RowVectors(capacity), RowVectors(capacity)},
@@ -78,16 +77,21 @@ class RowCompliance {
   std::size_t stride() const noexcept { return tools_.size(); }
   /// Whether the blocks of a row are stored. If not, it must be begun and all of its blocks set: those of further rows
   /// are then unknown.
-  bool knows(int i, const Key& key) const noexcept { return i < known_ && key_[at(i)] == key; }
+  bool knows(int i, const Key& key) const noexcept {
+    return i < known_ && versions_[at(i)] == key.version && areas_[at(i)] == key.area;
+  }
   void begin_row(int i, const Key& key) noexcept {
-    key_[at(i)] = key;
+    versions_[at(i)] = key.version;
+    areas_[at(i)] = key.area;
     known_ = i + 1;
-    if (i > 0) std::fill_n(&blocks_[9 * lanes * (first_[at(i)] + at(i - 1) / lanes)], 9 * lanes, 0.0);
+    if (i == 0) return;
+    double* const last = &blocks_[9 * lanes * (first_[at(i)] + at(i - 1) / lanes)];
+    for (std::size_t k = 0; k < 9 * lanes; ++k) last[k] = 0.0;
   }
   /// A_ij, j <= i.
   void set(int i, int j, const Matrix3& block) noexcept {
     if (i == j) {
-      std::copy_n(block.data(), 9, &diagonal_[9 * at(i)]);
+      for (std::size_t c = 0; c < 9; ++c) diagonal_[9 * at(i) + c] = block.data()[c];
       return;
     }
     double* const to = &blocks_[9 * lanes * (first_[at(i)] + at(j) / lanes) + at(j) % lanes];
@@ -126,7 +130,8 @@ class RowCompliance {
 
   const any_flags::ContactKernels* kernels_;
   int known_ = 0;
-  std::vector<Key> key_;
+  std::vector<std::uint64_t> versions_;  // keys of the rows
+  std::vector<double> areas_;
   std::vector<std::size_t> first_;  // group of a row's blocks
   std::vector<double> blocks_;      // by rows, groups of j < i; zero from the diagonal on
   std::vector<double> diagonal_;

@@ -144,10 +144,11 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
   largest_dent_ = std::sqrt(dent);
   largest_half_space_ = std::sqrt(half_space);
   pressed_normal_.normalize();
-  only_presses_ = std::ranges::all_of(loads, [&](const PointLoad& load) {
-    return !(load.magnitude > small * largest) || (-load.force.dot(load.point.normal) > aligned * load.magnitude &&
-                                                   load.point.normal.dot(pressed_normal_) > aligned);
-  });
+  only_presses_ = true;
+  for (const PointLoad& load : loads)
+    if (load.magnitude > small * largest)
+      only_presses_ = only_presses_ && -load.force.dot(load.point.normal) > aligned * load.magnitude &&
+                      load.point.normal.dot(pressed_normal_) > aligned;
 }
 
 /// A point that has both loads has their sum. Of loads that were blended again and again, those are left out that are a
