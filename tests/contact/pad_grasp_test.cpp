@@ -1,4 +1,5 @@
 // A tool that grasps a pad: a group of vertices that keep their places on the tool.
+#include "contact/servo_session.hpp"
 #include "contact/tool_session.hpp"
 
 #include <palpate/core/setup_error.hpp>
@@ -98,4 +99,30 @@ TEST_CASE("two tools hold a pad each and pull the tissue apart", "[contact][gras
   const Vector3 sum = -(by[0] + by[1]) / (part + 2.0 * pad_common);
   for (std::size_t i = 0; i < 2; ++i)
     CHECK((s.force(i) + (by[i] + pad_common * sum) / part).norm() < 1e-5 * s.force(i).norm());
+}
+
+TEST_CASE("a tool that presses grasps the point in the middle of those it presses", "[contact][grasp]") {
+  test::Pad pad = test::make_pad();
+  ServoOptions options;
+  options.force_limits = test::open_gate();
+  options.grasp_buttons = 1;
+  for (const Vector3& place : {Vector3(0.0131, 0.0147, 0), Vector3(0.0152, 0.0163, 0), Vector3(0.0117, 0.0158, 0),
+                               Vector3(0.0163, 0.0139, 0), Vector3(0.0149, 0.0151, 0)}) {
+    test::ServoSession session(pad, options);
+    ToolState& state = session.states[0];
+    state.position = place + Vector3(0, 0, test::pad_height + test::sphere_radius);
+    for (int k = 0; k < 40; ++k) {
+      state.position[2] -= 2.5e-5;
+      session.tick();
+    }
+    state.buttons = 1;
+    session.tick();
+    int grasped = 0;
+    for (const ToolContact& c : session.servo.read_snapshot().tool_contacts())
+      if (c.grasped) {
+        ++grasped;
+        CHECK((c.point - state.position).head<2>().norm() < 0.2 * test::sphere_radius);  // the print has 0.6 radii
+      }
+    CHECK(grasped == 1);
+  }
 }

@@ -48,7 +48,7 @@ struct Rows {
   }
   Matrix3& block(int i, int j) { return blocks[static_cast<std::size_t>(i * 100 + j)]; }
   /// The displacement at i per force at j, with the coupling: a rotation by c (arm_j x force) moves arm_i.
-  Matrix3 coupled(int i, int j, const CouplingCompliance& c) {
+  Matrix3 coupled(int i, int j, const RowCompliance::Coupling& c) {
     Matrix3 m = block(i, j);
     if (tool[at(i)] != tool[at(j)]) return m;
     m += c.translation * Matrix3::Identity();
@@ -68,8 +68,8 @@ struct Rows {
 TEST_CASE("Rows of the compliance along normals and in axes are those of single blocks", "[contact]") {
   const auto [name, kernels] = GENERATE(from_range(executable_kernels()));
   for (const int count : {1, 2, 4, 5, 17, 30})
-    for (const CouplingCompliance& coupling :
-         {CouplingCompliance{}, CouplingCompliance{0.7, 0.0}, CouplingCompliance{0.7, 0.4}}) {
+    for (const RowCompliance::Coupling& coupling :
+         {RowCompliance::Coupling{}, RowCompliance::Coupling{0.7, 0.0}, RowCompliance::Coupling{0.7, 0.4}}) {
       Rows rows(count, *kernels);
       std::vector<double> w(rows.compliance.stride()), all(9 * rows.compliance.stride());
       double error = 0.0;

@@ -110,6 +110,7 @@ class ContactProblem {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
   inline Vector3 middle_of_print(std::size_t t) const noexcept;
+  Candidate* point_to_grasp(const TissueView& tissue, const ContactTool& tool, std::size_t t) noexcept;
   Status grasp(const TissueView& tissue, Tools tools) noexcept;
   bool pin_pads() noexcept;
   bool presses_beside_pad(std::size_t t) const noexcept;

@@ -425,8 +425,8 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
     if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
     all += c.force;
     points += rows_.has_area(i);
-    const auto is_longer = [area = surface.double_area_squared(c.triangle)](double length) {
-      return area > length * length * length * length;
+    const auto is_longer = [fourth_power = surface.double_area_squared(c.triangle)](double length) {
+      return fourth_power > length * length * length * length;
     };
     if (rows_.is_on_thin_body(i) || is_longer(longest_stretched) || (!rows_.is_known(i) && is_longer(longest)))
       on_coarse += c.force;
@@ -598,9 +598,25 @@ inline Vector3 ContactProblem::middle_of_print(std::size_t t) const noexcept {
   return all > 0.0 ? Vector3(sum / all) : sum;
 }
 
-/// Grasps the nearest point, or the pad around it, for every tool that has just begun to grasp, and releases others. Of
-/// the points that press, all of which are at the tool, it is the one in the middle. Pads leave half of the rows to
-/// points that press. Where other vertices are pinned than before, points have moved.
+/// The point that a tool grasps: of those that it presses the one nearest to their middle, since the gaps of all of
+/// them are zero but for rounding; else the nearest one within its reach, or null.
+PALPATE_INLINE Candidate* ContactProblem::point_to_grasp(const TissueView& tissue, const ContactTool& tool,
+                                                         std::size_t t) noexcept {
+  const Vector3 middle = middle_of_print(t);
+  Candidate *pressed = nullptr, *nearest = nullptr;
+  for (Candidate& c : candidates_.items()) {
+    if (c.tool != static_cast<int>(t)) continue;
+    if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
+    if (!c.facing || !(c.gap <= Grasp::reach * tool.radius)) continue;
+    if (nearest == nullptr || c.gap < nearest->gap) nearest = &c;
+    if (!(c.force > 0.0)) continue;
+    if (pressed == nullptr || (c.point - middle).squaredNorm() < (pressed->point - middle).squaredNorm()) pressed = &c;
+  }
+  return pressed != nullptr ? pressed : nearest;
+}
+
+/// Grasps a point, or the pad around it, for every tool that has just begun to grasp, and releases others. Pads leave
+/// half of the rows to points that press. Where other vertices are pinned than before, points have moved.
 PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tools) noexcept {
   std::array<bool, maximum_tools> takes_pad{};
   for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -610,27 +626,16 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
     constexpr double grasped_spacing = 0.25;  // radii; a single point holds at least so much of the surface
-    const Vector3 middle = middle_of_print(t);
-    Candidate* nearest = nullptr;
-    bool any_presses = false;
-    double least = infinity;
-    for (Candidate& c : candidates_.items()) {
-      if (c.tool != static_cast<int>(t)) continue;
-      if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
-      if (!c.facing || !(c.gap <= Grasp::reach * tool.radius)) continue;
-      const bool presses = c.force > 0.0;
-      const double far = presses ? (c.point - middle).norm() : c.gap;
-      if (presses == any_presses ? far < least : presses) any_presses = presses, least = far, nearest = &c;
-    }
-    if (nearest == nullptr) continue;
-    nearest->area = std::max({nearest->area, candidates_.samples().area(nearest->sample, levels_.level(nearest->tool)),
-                              std::pow(grasped_spacing * tool.radius, 2)});
+    Candidate* const point = point_to_grasp(tissue, tool, t);
+    if (point == nullptr) continue;
+    point->area = std::max({point->area, candidates_.samples().area(point->sample, levels_.level(point->tool)),
+                            std::pow(grasped_spacing * tool.radius, 2)});
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     takes_pad[t] = parameters_.grasp_radius > 0.0 && most > 2;
     if (takes_pad[t])
-      g.take_pad(tissue.contact_surface(), candidates_, *nearest, tool, parameters_.grasp_radius, most);
+      g.take_pad(tissue.contact_surface(), candidates_, *point, tool, parameters_.grasp_radius, most);
     else
-      g.take(*nearest, tool);
+      g.take(*point, tool);
   }
   if (!pin_pads()) return {};
   for (std::size_t t = 0; t < tools.size(); ++t)

@@ -129,7 +129,7 @@ class ContactSurface {
   KnownErrors known_errors(int body = 0) const noexcept;
   /// sqrt(2 area): of half a square, the side of that square [m].
   double facet_length(int t) const noexcept;
-  /// Its fourth power, without roots [m^4].
+  /// The square of twice the area of a facet: the fourth power of facet_length, without roots [m^4].
   double double_area_squared(int t) const noexcept {
     const Triangle& v = triangle(t);
     return cross(position(v[1]) - position(v[0]), position(v[2]) - position(v[0])).squaredNorm();

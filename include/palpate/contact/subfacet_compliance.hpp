@@ -77,11 +77,14 @@ class SubfacetCompliance {
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  /// Sorts the blocks of every vertex by the number of the other vertex, for `find`.
   void sort_blocks();
+  /// The block for the displacement of vertex i per force on vertex j; null where none is stored. A binary search.
+  const Block* find(int i, int j) const noexcept;
 
   std::vector<HalfSpacePoint> vertices_;
   std::vector<int> first_;
-  std::vector<Block> blocks_;  // of a vertex j by the number of the other
+  std::vector<Block> blocks_;
   bool has_copies_ = false;
 };
 

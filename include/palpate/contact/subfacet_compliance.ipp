@@ -61,7 +61,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
   sort_blocks();
 }
 
-/// By insertion: nearly all are in order.
+/// By insertion: only those of a surface after cuts are not in order.
 PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
   for (std::size_t v = 0; v + 1 < first_.size(); ++v)
     for (std::size_t k = at(first_[v]) + 1; k < at(first_[v + 1]); ++k) {
@@ -71,6 +71,20 @@ PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
         blocks_[place] = blocks_[place - 1];
       blocks_[place] = block;
     }
+}
+
+PALPATE_INLINE const SubfacetCompliance::Block* SubfacetCompliance::find(int i, int j) const noexcept {
+  std::size_t begin = at(first_[at(j)]), end = at(first_[at(j) + 1]);
+  while (begin < end) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Block& block = blocks_[middle];
+    if (block.vertex == i) return &block;
+    if (block.vertex < i)
+      begin = middle + 1;
+    else
+      end = middle;
+  }
+  return nullptr;
 }
 
 PALPATE_INLINE bool SubfacetCompliance::knows(const ContactSample& sample) const noexcept {
@@ -117,18 +131,9 @@ PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const ContactSample& p, const C
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t b = 0; b < 3; ++b) {
     if (q.weights[b] == 0.0) continue;
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!(p.weights[a] > 0.0)) continue;
-      std::size_t begin = at(first_[at(q.vertices[b])]), end = at(first_[at(q.vertices[b]) + 1]);
-      const std::size_t last = end;
-      while (begin < end) {
-        const std::size_t middle = (begin + end) / 2;
-        (blocks_[middle].vertex < p.vertices[a] ? begin : end) =
-            blocks_[middle].vertex < p.vertices[a] ? middle + 1 : middle;
-      }
-      if (begin < last && blocks_[begin].vertex == p.vertices[a])
-        sum.noalias() += (p.weights[a] * q.weights[b]) * blocks_[begin].shown;
-    }
+    for (std::size_t a = 0; a < 3; ++a)
+      if (const Block* block = p.weights[a] > 0.0 ? find(p.vertices[a], q.vertices[b]) : nullptr)
+        sum.noalias() += (p.weights[a] * q.weights[b]) * block->shown;
   }
   return sum;
 }

@@ -38,6 +38,7 @@ class Candidates {
     if (!subfacet_ || depends_on_pad(samples_[sample])) return {};
     return subfacet_->point(samples_[sample], samples_.normal(sample));
   }
+  /// Whether that point is known; costs less than the point.
   bool knows_half_space(int sample) const noexcept {
     return subfacet_ && !depends_on_pad(samples_[sample]) && subfacet_->knows(samples_[sample]);
   }
@@ -101,18 +102,18 @@ class Candidates {
     return c.gap - (travel(static_cast<std::size_t>(c.tool)) - c.seen);
   }
 
-  /// A candidate that may be close, small enough for many of them to stay in the cache.
+  /// What is read of a candidate in every round: many of these stay in the cache.
   struct Near {
     int number, tool;
-    double until;  ///< travel up to which its gap is not negative, or more [m]
+    double until;  ///< its gap is not negative before sphere and surface have travelled so far [m]
   };
   /// All candidates whose gap may be at most that of their tool in `reach`, and some more, by increasing number.
   /// Collected again only when spheres and surface have moved by a part of the radius: most candidates are farther, and
   /// visiting all of them in every round would cost as much as a small contact.
   std::span<Near> within(const std::array<double, maximum_tools>& reach, std::span<const ContactTool> tools) noexcept;
-  /// Lower bound of the present gap, as of `note_gap`.
+  /// Lower bound of the present gap, from the gap known at the last `note_gap` [m].
   double least_gap(const Near& n) const noexcept { return n.until - travel(static_cast<std::size_t>(n.tool)); }
-  /// Takes the bound of the candidate itself.
+  /// Takes over the gap that the candidate has by now.
   void note_gap(Near& n) const noexcept { n.until = until(list_.points[n.number]); }
 
   /// Raises the lower bound of a candidate's gap to that by the displacement of its vertices, where `position` costs

@@ -58,8 +58,9 @@ struct ContactKernels {
 extern const ContactKernels contacts_avx2, contacts_avx512;
 
 }  // namespace any_flags
+}  // namespace palpate
 
-inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 using ContactNumbers = Lanes<double, any_flags::contacts_at_once>;
 
@@ -286,5 +287,4 @@ inline void add_half_space(const double* loads, int count, const double* point, 
 
 inline constexpr any_flags::ContactKernels contacts_here{along_normals, in_axes, displace, add_half_space};
 
-}}
-}  // namespace palpate::detail
+}}}  // namespace palpate::detail

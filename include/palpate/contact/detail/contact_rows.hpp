@@ -129,7 +129,7 @@ class ContactRows {
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;
   void set_friction(const ContactTool& tool, int i) noexcept;
   double estimate_change(std::span<const ContactTool> tools) noexcept;
-  CouplingCompliance coupling_of(const ContactTool& tool) const noexcept {
+  RowCompliance::Coupling coupling_of(const ContactTool& tool) const noexcept {
     return {tool.compliance + floor_, tool.rotational_compliance};
   }
   void store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept;

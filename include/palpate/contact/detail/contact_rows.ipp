@@ -61,7 +61,7 @@ PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView
   return workspace;
 }
 
-/// The blocks of row i, unless they are as in the last linearisation.
+/// Stores the blocks of row i, unless they are known from the last linearisation.
 PALPATE_INLINE void ContactRows::store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept {
   const int p = candidate_[at(i)]->slot;
   const RowCompliance::Key key{compliance_.version(p), candidate_[at(i)]->area};

@@ -16,7 +16,8 @@ class HalfSpaceLoads {
  public:
   /// Allocates; for set-up.
   explicit HalfSpaceLoads(int capacity, const any_flags::ContactKernels& kernels = detail::contacts_here)
-      : kernels_(&kernels), numbers_(numbers * lanes * any_flags::contact_groups(capacity), 1.0) {}  // no length is 0
+      : kernels_(&kernels),
+        numbers_(numbers * lanes * any_flags::contact_groups(capacity), 1.0) {}  // the kernel divides by lengths
 
   /// Sets load i of 0 to i: those after it in its group have no force.
   void set(int i, const HalfSpacePoint& point, const Vector3& force) noexcept {

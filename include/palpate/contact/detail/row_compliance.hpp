@@ -10,8 +10,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-using any_flags::CouplingCompliance;
-
 /// A vector per row, stored as the kernels read them.
 class RowVectors {
  public:
@@ -46,6 +44,7 @@ class RowVectors {
 /// depends on normals and forces is computed from them for several rows at a time. No allocation after construction.
 class RowCompliance {
  public:
+  using Coupling = any_flags::CouplingCompliance;
   /// What a row's blocks depend on: the point in a slot of PointCompliance and the area that it stands for.
   struct Key {
     std::uint64_t version = 0;
@@ -107,11 +106,11 @@ class RowCompliance {
 
   /// w[j] = n_i . B n_j for j <= i with the normals n and B, the block A_ij and the coupling of a tool that both rows
   /// have. Writes whole groups: up to `stride` numbers. About 30 flops per row.
-  void along_normals(int i, const CouplingCompliance& coupling, double* w) noexcept {
+  void along_normals(int i, const Coupling& coupling, double* w) noexcept {
     kernels_->along_normals(arrays(), i, coupling, w);
   }
   /// a_i . B b_j for all axes a of i and b of j <= i: at w[(3 a + b) stride + j]. About 100 flops per row.
-  void in_axes(int i, const CouplingCompliance& coupling, double* w) noexcept {
+  void in_axes(int i, const Coupling& coupling, double* w) noexcept {
     kernels_->in_axes(arrays(), i, coupling, stride(), w);
   }
   /// The displacements of the points of `rows` rows under the forces on the first `loaded` of them, without coupling

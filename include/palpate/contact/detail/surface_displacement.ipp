@@ -63,7 +63,7 @@ PALPATE_INLINE void SurfaceDisplacement::add_load(const PointLoad& load, const C
   half_space_.set(load_count_, load.point, load.force);
   sample_[static_cast<std::size_t>(load_count_)] = load.sample;
   PointLoad& own = loads_[static_cast<std::size_t>(load_count_++)];
-  own.sample = load.sample;  // member by member: GCC copies the whole with a slow instruction
+  own.sample = load.sample;  // GCC copies the whole struct with `rep movs`, which takes longer than its members
   own.point = load.point;
   own.area = load.area;
   own.moved = load.moved;
