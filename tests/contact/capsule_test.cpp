@@ -51,7 +51,8 @@ TEST_CASE("a capsule on springs: force and torque equal the closed form in any o
   for (int run = 0; run < 40; ++run) {
     AnalyticTissue tissue(20, 0.03, 2e-2);  // 1.5 mm apart
     const double angle = random.uniform(0.0, 6.28);
-    const Vector3 axis(std::cos(angle), std::sin(angle), random.uniform(-0.15, 0.15));
+    // No end is deeper than half the radius: independent springs are not pushed aside, so that the cone would act.
+    const Vector3 axis(std::cos(angle), std::sin(angle), random.uniform(-0.05, 0.05));
     const Vector3 end(random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), radius - random.uniform(2e-4, 1e-3));
     ToolSession s(tissue, {round_tool(radius, end + Vector3(0, 0, 3e-3), 0.0, half, axis)});
     s.move(0, end, 100);
@@ -188,4 +189,34 @@ TEST_CASE("a capsule that grasps with its end carries a torque", "[contact][gras
   s.move(0, {1e-3, 0, radius + half}, 20);
   CHECK_THAT(s.force()[0], WithinRel(-1.0, 1e-5));
   CHECK_THAT(s.tools[0].torque[1], WithinRel(radius + half, 1e-5));  // (0, 0, -(r + h)) x (-1, 0, 0) N
+}
+
+TEST_CASE("a capsule that presses with its side has the cap and cone of a sphere all along its axis",
+          "[contact][capsule]") {
+  testing::Random random(83);
+  const double radius = 3e-3, half = 6e-3;
+  int on_cone = 0;
+  for (int k = 0; k < 200; ++k) {
+    ContactTool capsule = round_tool(radius, Vector3(1e-3, -2e-3, 3e-3), 0.0), sphere = capsule;
+    capsule.half_length = half;
+    capsule.rotation = rotation_by(random.vector<3>(-2.0, 2.0));
+    const Vector3 across = capsule.axis().unitOrthogonal();
+    const Vector3 outward = (across + random.uniform(-0.5, 0.5) * capsule.axis()).normalized();
+    if (!capsule.may_have_cone(outward)) continue;
+    capsule.outward = sphere.outward = outward;
+    capsule.entered = sphere.entered = 1.0;
+    const Vector3 p = capsule.proxy + random.vector<3>(-12e-3, 12e-3);
+    const CorePoint found = capsule.closest(p);
+    double least = 1.0;
+    for (int i = -2000; i <= 2000; ++i) {
+      sphere.proxy = capsule.proxy + half * i / 2000.0 * capsule.axis();
+      least = std::min(least, sphere.closest(p).distance);
+    }
+    CHECK(found.distance <= least + 1e-12);
+    CHECK_THAT(found.distance, WithinAbs(least, 1e-3 * radius));
+    CHECK_THAT(found.normal.norm(), WithinAbs(1.0, 1e-12));
+    CHECK(found.normal.dot(outward) >= 0.5 - 1e-9);
+    on_cone += found.normal.dot(outward) < 0.5 + 1e-9;
+  }
+  CHECK(on_cone > 30);
 }

@@ -1,4 +1,5 @@
 // Convex tools compared with closed forms, and with spheres and capsules.
+#include "contact/servo_session.hpp"
 #include "contact/tool_session.hpp"
 
 #include <palpate/contact/convex_tool.hpp>
@@ -285,4 +286,23 @@ TEST_CASE("friction of a rounded box sticks, then slides with the coefficient", 
   s.move(0, {5e-4, 0, 1.8e-3}, 480);
   CHECK_THAT(s.force()[0], WithinRel(-0.3 * normal, 1e-4));
   CHECK_THAT(s.force()[2], WithinRel(normal, 1e-4));
+}
+
+TEST_CASE("a plate that just touches is not flagged, whatever rounding does", "[contact][convex]") {
+  test::Pad pad = test::make_pad("z1", 1e4, {3, 3, 2});
+  ServoOptions options;
+  options.force_limits = test::open_gate();
+  options.contact.friction = GENERATE(0.0, 0.3);
+  for (const double side : {5e-3, 7e-3, 11e-3, 13e-3, 17e-3}) {
+    HapticServo servo(pad, ConvexTool::box(Vector3(side, side, 4e-3), 1e-3), options);
+    ToolState state;
+    state.position = Vector3(0.0131, 0.0147, test::pad_height + 2e-3);
+    for (int k = 0; k < 50; ++k) {
+      state.time += 1e-3;
+      state.position[0] += 1e-7;
+      const GatedForce out = servo.tick(state);
+      if (k > 1) CHECK(out.status.ok());
+      CHECK(out.force().norm() < 1e-9);
+    }
+  }
 }

@@ -126,3 +126,28 @@ TEST_CASE("a tool that presses grasps the point in the middle of those it presse
     CHECK(grasped == 1);
   }
 }
+
+TEST_CASE("a flat tool that grasped a point pulls it up, and holds it, with a force of its own", "[contact][grasp]") {
+  test::Pad pad = test::make_pad();
+  ServoOptions options;
+  options.force_limits = test::open_gate();
+  options.grasp_buttons = 1;
+  for (const double side : {4e-3, 6e-3, 8e-3, 10e-3}) {
+    HapticServo servo(pad, ConvexTool::box(Vector3(side, side, 4e-3), 1e-3), options);
+    ToolState state;
+    state.position = Vector3(0.0131, 0.0147, test::pad_height + 2e-3);
+    const auto move = [&](double up) {
+      for (int k = 0; k < 100; ++k) {
+        state.position[2] += 1e-2 * up;
+        state.time += 1e-3;
+        CHECK_FALSE(servo.tick(state).status.has(StatusFlag::solver_not_converged));
+      }
+    };
+    move(-0.5e-3);
+    state.buttons = 1;
+    move(0.0);
+    move(2.5e-3);
+    move(0.0);
+    CHECK(servo.contact_force().z() < -1e-3);
+  }
+}

@@ -23,9 +23,9 @@ ContactSamples plane_of_samples() {
 }
 
 /// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the
-/// points, relative to that of hexagons.
+/// points, relative to that of hexagons. `spread`: points of equal area per point that presses.
 Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity, double density = 1.0,
-            const Areas& vertices = {}) {
+            const Areas& vertices = {}, double spread = 1.0) {
   std::array<PointLevels::Size, maximum_tools> sizes;
   sizes.fill({tip_radius, tip_radius});
   std::array<bool, maximum_tools> near{};
@@ -42,7 +42,7 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
     const int points = static_cast<int>(points_at(std::floor(levels.level(tool))));
     used[t] = std::min(points, levels.share(tool));
     for (int i = used[t]; i < points; ++i) levels.note_left_out(tool, 1e-3);
-    pressing[t] = points_at(levels.level(tool)) * used[t] / std::max(1, points);
+    pressing[t] = spread * points_at(levels.level(tool)) * used[t] / std::max(1, points);
   }
   levels.end_tick(used, pressing, {}, vertices);
   return used;
@@ -106,6 +106,26 @@ TEST_CASE("a print that changes by a tenth and back keeps its level", "[contact]
       CHECK(levels.level(0) == level);
     }
   }
+}
+
+TEST_CASE("a print of few points, whose size depends on the level, does not go from level to level",
+          "[contact][levels]") {
+  const ContactSamples samples = plane_of_samples();
+  // Between levels its forces are spread over more points of equal area than at any of them.
+  for (const double spread : {1.2, 1.5, 1.8})
+    for (double area = 4e-6; area < 3e-5; area *= 1.05) {
+      PointLevels levels;
+      double lowest = 100.0, highest = 0.0;
+      for (int i = 0; i < 600; ++i) {
+        const double level = levels.level(0);
+        const bool is_whole = level == std::floor(level);
+        tick(levels, samples, {area}, 400, 1.0, {}, is_whole ? 1.0 : spread);
+        if (i < 400) continue;
+        lowest = std::min(lowest, levels.level(0));
+        highest = std::max(highest, levels.level(0));
+      }
+      CHECK(lowest == highest);
+    }
 }
 
 TEST_CASE("where a list has no room for all points near a tool, the tool has fewer", "[contact][levels]") {

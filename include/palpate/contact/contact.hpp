@@ -73,8 +73,9 @@ struct ContactTool {
   Vector3 torque = Vector3::Zero();               ///< of the tissue on the tool, about the proxy [N m]
   double rotational_compliance = 0.0;             ///< of the coupling [rad/(N m)]; 0 is rigid
   double end_path = 0.0;                          ///< bound of the path of its core by rotation, last tick [m]
-  Vector3 outward = Vector3::Zero();              ///< of a sphere that presses: where it came from, unit; else zero
-  double entered = -infinity;  ///< height of its highest contact at rest above its centre, along `outward` [m]
+  Vector3 outward = Vector3::Zero();              ///< of a sphere that presses, or a capsule with its side: where it
+                                                  ///< came from, unit; else zero
+  double entered = -infinity;  ///< height of its highest contact at rest above its core, along `outward` [m]
 
   /// Makes the tool inactive and sets force and torque to zero.
   void lift() noexcept;
@@ -87,8 +88,8 @@ struct ContactTool {
   Vector3 axis() const noexcept;
   /// The point of the core closest to `p`.
   CorePoint closest(const Vector3& p) const noexcept {
-    if (half_length > 0.0) return closest_extended(p);
-    return outward.squaredNorm() > 0.0 ? closest_pressed(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
+    if (outward.squaredNorm() > 0.0) return closest_pressed(p);
+    return half_length > 0.0 ? closest_extended(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
   }
   /// Whether the core is within a distance of `p`; true for some points that are slightly farther from a hull.
   bool is_within(const Vector3& p, double distance) const noexcept {
@@ -101,12 +102,20 @@ struct ContactTool {
   /// Radius of that sphere [m].
   double core_radius() const noexcept {
     if (hull != nullptr) return hull->radius();
-    return half_length > 0.0 ? half_length : has_cone() ? 0.2 * radius + 1.1 * std::max(0.0, entered) : 0.0;
+    return half_length + (has_cone() ? 0.2 * radius + 1.1 * std::max(0.0, entered) : 0.0);
   }
   /// What the largest spacing of its contact points is relative to [m]: the radius of a sphere or capsule. The faces of
   /// a convex tool may be much larger than the radius of its edges.
   double point_scale() const noexcept { return hull != nullptr ? radius + 0.5 * hull->radius() : radius; }
-  /// Whether a sphere has entered material above the rim of its cap, where its cone begins.
+  /// Whether it came from `direction` and may have a cone: a sphere, or a capsule that does not press with an end. What
+  /// is beside the shaft of a stylus does not part. A convex tool has steep sides.
+  bool may_have_cone(const Vector3& direction) const noexcept {
+    constexpr double end_on = 0.5;  // 60 degrees from the axis
+    return hull == nullptr && (half_length == 0.0 || std::abs(axis().dot(direction)) < end_on);
+  }
+  /// Height of `p` above the core, along `outward` [m].
+  double height(const Vector3& p) const noexcept;
+  /// Whether it has entered material above the rim of its cap, where its cone begins.
   bool has_cone() const noexcept { return entered > -cone_cosine * radius; }
   /// Upper bound of the path of any point of the surface of cap and cone by a change of `outward` and `entered` [m].
   double cone_path(const Vector3& outward_before, double entered_before) const noexcept;
@@ -116,9 +125,11 @@ struct ContactTool {
   double longest_step() const noexcept { return 0.25 * radius + path_length(); }
 
  private:
-  static constexpr double cone_cosine = 0.5;  // of the rim of the cap, from `outward` reversed: 60 degrees
+  // Of the rim of the cap, from `outward` reversed: 60 degrees.
+  static constexpr double cone_cosine = 0.5, cone_sine = 0.8660254037844386;
   CorePoint closest_extended(const Vector3& p) const noexcept;
   CorePoint closest_pressed(const Vector3& p) const noexcept;
+  double along_cone(const Vector3& p, const Vector3& direction) const noexcept;
   bool is_within_extended(const Vector3& p, double distance) const noexcept;
   double along_capsule(const Vector3& p, const Vector3& direction) const noexcept {
     return std::clamp(direction.dot(p - proxy), -half_length, half_length);

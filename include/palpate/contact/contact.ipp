@@ -51,21 +51,40 @@ PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const n
   const double along = along_capsule(p, direction);
   return from_core(p, proxy + along * direction, along * own_axis);
 }
-/// A sphere that presses deeper than its radius would part the surface and pass, because linear tissue gives way to the
+/// Where on the axis the cone is closest to `p`: the least of sine sqrt(d^2 + x^2) - cosine height, with x the way from
+/// the point whose distance d across `outward` is least.
+PALPATE_INLINE double ContactTool::along_cone(const Vector3& p, const Vector3& direction) const noexcept {
+  const double along = outward.dot(direction);
+  const Vector3 across = direction - along * outward, offset = p - proxy - outward.dot(p - proxy) * outward;
+  const double length = across.norm(), nearest = offset.dot(across) / (length * length);
+  const double slope = -cone_cosine * along / (cone_sine * length);
+  const double way = (offset - nearest * across).norm() * slope / std::sqrt(1.0 - slope * slope);
+  return std::clamp(nearest + way / length, -half_length, half_length);
+}
+/// A tool that presses deeper than its radius would part the surface and pass, because linear tissue gives way to the
 /// side. Material that it entered is therefore kept from its cap and from the cone that is tangent to it: no normal is
-/// farther from `outward` than the rim of the cap. On plane tissue nothing is beyond that rim until the sphere is about
-/// a radius deep.
+/// farther from `outward` than the rim of the cap. On plane tissue nothing is beyond that rim until the tool is about
+/// a radius deep. A capsule has the cap and cone of a sphere at every point of its axis.
 PALPATE_INLINE CorePoint ContactTool::closest_pressed(const Vector3& p) const noexcept {
-  constexpr double cosine = cone_cosine, sine = 0.8660254037844386;  // of the rim of the cap, from the pole
-  const CorePoint own = from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
-  const double height = outward.dot(p - proxy);
-  if (own.normal.dot(outward) >= cosine || height > entered) return own;
-  Vector3 aside = p - proxy - height * outward;
+  const bool is_capsule = half_length > 0.0;
+  const Vector3 direction = is_capsule ? axis() : Vector3(0.0, 0.0, 0.0);
+  const auto core = [&](double along) -> Vector3 { return proxy + along * direction; };
+  const double own_along = along_capsule(p, direction);
+  const CorePoint own = from_core(p, core(own_along), own_along * own_axis);
+  if (own.normal.dot(outward) >= cone_cosine || outward.dot(p - core(own_along)) > entered) return own;
+  const Vector3 from = core(is_capsule ? along_cone(p, direction) : 0.0);
+  const double height = outward.dot(p - from);
+  Vector3 aside = p - from - height * outward;
   const double distance = aside.norm();
   aside = distance > 0.0 ? Vector3(aside / distance) : outward.unitOrthogonal();
-  const Vector3 normal = cosine * outward - sine * aside;
-  const double along = sine * distance - cosine * height;
-  return {p + along * normal - proxy, normal, along};
+  const Vector3 normal = cone_cosine * outward - cone_sine * aside;
+  const double along = cone_sine * distance - cone_cosine * height;
+  const Vector3 point = p + along * normal - proxy;
+  return {is_capsule ? Vector3(rotation.transpose() * point) : point, normal, along};
+}
+PALPATE_INLINE double ContactTool::height(const Vector3& p) const noexcept {
+  const Vector3 direction = axis();
+  return outward.dot(p - proxy - along_capsule(p, direction) * direction);
 }
 PALPATE_INLINE double ContactTool::cone_path(const Vector3& outward_before, double entered_before) const noexcept {
   const double begin = -cone_cosine * radius, now = std::max(begin, entered), before = std::max(begin, entered_before);

@@ -106,6 +106,7 @@ class ContactProblem {
   static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
   static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest push
+  static constexpr double rounding = 1e-12;            // the same, relative to the radius: a tool that just touches
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
@@ -114,7 +115,7 @@ class ContactProblem {
   Status grasp(const TissueView& tissue, Tools tools) noexcept;
   bool pin_pads() noexcept;
   bool presses_beside_pad(std::size_t t) const noexcept;
-  inline bool is_grasped(const Candidate& c) const noexcept;
+  inline bool is_grasped(const ContactSurface& surface, const Candidate& c) const noexcept;
   inline bool may_have_row(const Candidate& c) const noexcept;
   inline void set_area(Candidate& c) const noexcept;
   static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);

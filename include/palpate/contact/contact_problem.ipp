@@ -51,8 +51,8 @@ PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters
   return p;
 }
 
-inline bool ContactProblem::is_grasped(const Candidate& c) const noexcept {
-  return grasps_[at(c.tool)].holds(c, candidates_.sample_of(c));
+inline bool ContactProblem::is_grasped(const ContactSurface& surface, const Candidate& c) const noexcept {
+  return grasps_[at(c.tool)].holds(surface, candidates_, c);
 }
 
 /// Fine enough for the first touch of the smallest tool; coarse enough for the largest at depths about its radius.
@@ -236,7 +236,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, Tools tools) noexcept {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     ContactTool& tool = tools[t];
-    if (tool.half_length > 0.0) continue;
+    if (tool.hull != nullptr) continue;
     // Without force also where it restarts elsewhere. A tool that grasps is drawn through the tissue around it.
     if (tool.force.squaredNorm() == 0.0 || is_holding(t)) {
       tool.outward.setZero();
@@ -252,12 +252,13 @@ PALPATE_INLINE void ContactProblem::set_outward(const ContactSurface& surface, T
     if (all == 0.0) continue;  // the surface was cut
     const bool is_shallow = tool.outward.squaredNorm() == 0.0 || !tool.has_cone();
     if (is_shallow) tool.outward = sum.norm() > common * all ? sum.normalized() : Vector3(0.0, 0.0, 0.0);
+    if (!tool.may_have_cone(tool.outward)) tool.outward.setZero();
     tool.entered = -infinity;
     constexpr double facing = 0.8;  // 37 degrees: not two walls of a corner
     for (int i = 0; i < rows_.count(); ++i) {
       const Contact& c = rows_.contacts()[at(i)];
       if (presses(c) && surface.normal(rows_.candidate(i).triangle).dot(tool.outward) > facing)
-        tool.entered = std::max(tool.entered, tool.outward.dot(c.rest - tool.proxy));
+        tool.entered = std::max(tool.entered, tool.height(c.rest));
     }
   }
 }
@@ -271,10 +272,11 @@ PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept 
 }
 
 /// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
-/// smaller by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not
-/// stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
+/// smaller by the same ratio are a geometric series. Where one grows, and the last is not small, the tool leaves an
+/// equilibrium that is not stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation
+/// before.
 PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
-  if (rest == infinity || (change >= before && change > growing)) return infinity;
+  if (change > growing && (rest == infinity || change >= before)) return infinity;
   return change < before ? std::max(change, change * change / (before - change)) : change;
 }
 
@@ -680,7 +682,7 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
       if (rows_.count() < rows_.capacity()) rows_.add(tissue, candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
-    if (rows_.count() < rows_.capacity() && !is_grasped(c))
+    if (rows_.count() < rows_.capacity() && !is_grasped(tissue.contact_surface(), c))
       rows_.add(tissue, candidates_, c);
     else
       c.lift();  // only rows carry forces
@@ -744,22 +746,37 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   }
 }
 
-/// The normals of a linearisation depend on the forces of the one before, which depend on its normals. `feedback_` is
-/// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point.
+/// The normals of a linearisation depend on the forces of the one before, which depend on its normals: a fixed point.
+/// `feedback_` is the ratio of successive changes of the normals, at most a half: with more, parts of the normals that
+/// do not feed back would swing. From the third linearisation on the secant step of Anderson (1965) with one earlier
+/// state finds the fixed point also where the ratio is above 1, or negative.
 PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
-  double back = 0.0, changed = 0.0;
+  constexpr double most_feedback = 0.5, longest = 2.0;  // of a secant step, in changes of the normals
+  constexpr double least = 1e-16;                       // forces times squares of changes
+  double back = 0.0, moved = 0.0, slope = 0.0, curved = 0.0, made_moved = 0.0, rest = 0.0;
   for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
     const Candidate& c = *pressing_[at(i)];
-    if (c.history.known < 2) continue;
-    const Vector3 before = c.history.used - c.history.used_before;
-    back += c.force * before.dot(c.normal - c.history.made_before);
-    changed += c.force * before.squaredNorm();
+    const NormalHistory& h = c.history;
+    if (h.known < 2) continue;
+    const Vector3 change = c.normal - h.used, turn = change - (h.made_before - h.used_before),
+                  way = h.used - h.used_before, made_way = c.normal - h.made_before;
+    back += c.force * way.dot(made_way);
+    moved += c.force * way.squaredNorm();
+    slope += c.force * change.dot(turn);
+    curved += c.force * turn.squaredNorm();
+    made_moved += c.force * made_way.squaredNorm();
+    rest += c.force * change.squaredNorm();
   }
-  if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, 0.75);
+  if (moved > least) feedback_ = std::clamp(back / moved, 0.0, most_feedback);
+  double secant = curved > least ? slope / curved : 0.0;
+  secant *= std::min(1.0, longest * std::sqrt(rest / std::max(secant * secant * made_moved, least)));
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const Vector3 made = c.normal;
-    if (c.history.known > 0) c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
+    if (secant != 0.0 && c.history.known > 1)
+      c.normal = (made - secant * (made - c.history.made_before)).normalized();
+    else if (secant == 0.0 && c.history.known > 0)
+      c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
     c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
   }
 }
@@ -780,7 +797,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     candidates_.note_gap(near);
     if (c.row >= 0 || candidates_.least_gap(c) > reach) continue;
     const bool is_finer = !may_have_row(c);
-    if ((is_finer && levels_.has_areas()) || is_grasped(c)) continue;
+    if ((is_finer && levels_.has_areas()) || is_grasped(tissue.contact_surface(), c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
     const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     if (candidates_.is_stale(c)) {
@@ -794,7 +811,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
     if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
     gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
-    if (!(gap < -allowed)) continue;
+    if (!(gap < -std::max(allowed, rounding * tool.radius))) continue;
     if (is_finer)
       levels_.note_skipped(c.tool, -gap);
     else

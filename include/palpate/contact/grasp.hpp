@@ -22,7 +22,7 @@ class Grasp {
   }
   std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
   /// Whether a point is grasped, or moves more with grasped vertices than with others: its own row would be stiff.
-  bool holds(const Candidate& c, const ContactSample& sample) const noexcept;
+  bool holds(const ContactSurface& surface, const Candidates& candidates, const Candidate& c) const noexcept;
 
   /// Grasps this point at its present place on the tool.
   void take(const Candidate& point, const ContactTool& tool) noexcept;

@@ -5,6 +5,7 @@
 #include <palpate/contact/grasp.hpp>
 
 #include <algorithm>
+#include <numbers>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -46,12 +47,19 @@ class PadSearch {
 
 }  // namespace detail
 
-PALPATE_INLINE bool Grasp::holds(const Candidate& c, const ContactSample& sample) const noexcept {
+PALPATE_INLINE bool Grasp::holds(const ContactSurface& surface, const Candidates& candidates,
+                                 const Candidate& c) const noexcept {
   if (count_ == 0) return false;
+  const ContactSample& sample = candidates.sample_of(c);
   const auto grasped = [&](int vertex) {
     return std::find(vertices_.begin(), vertices_.begin() + count_, vertex) != vertices_.begin() + count_;
   };
-  if (vertices_[0] < 0) return c.sample == rows_[0].sample;
+  if (vertices_[0] < 0) {
+    if (c.sample == rows_[0].sample) return true;
+    if (!candidates.half_space_point(rows_[0].sample).is_known()) return false;
+    const Vector3 middle = Candidates::rest(surface, candidates.sample_of(rows_[0]));
+    return (Candidates::rest(surface, sample) - middle).squaredNorm() < rows_[0].area * std::numbers::inv_pi;
+  }
   double moved = 0.0;
   for (std::size_t a = 0; a < 3; ++a)
     if (sample.weights[a] > 0.0 && grasped(sample.vertices[a])) moved += sample.weights[a];

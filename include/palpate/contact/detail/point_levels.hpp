@@ -88,7 +88,7 @@ class PointLevels {
   double step(std::size_t tool, int used, double growth, double points) noexcept;
   double least_with_rows(std::size_t tool, bool is_many, double rows) noexcept;
   double touch_level(std::size_t tool) const noexcept { return std::max(touch_[tool], with_room_[tool]); }
-  double next_goal(std::size_t tool, double size) const noexcept;
+  double next_goal(std::size_t tool, double size) noexcept;
 
   std::array<int, maximum_tools> share_{}, had_{}, needed_{}, left_out_{}, skipped_{};
   std::array<double, maximum_tools> radius_{}, level_{}, goal_{}, least_{}, touch_{}, most_{}, crowded_{};
@@ -102,6 +102,12 @@ class PointLevels {
     int share = 0;       ///< rows; 0: never
   };
   std::array<Overflow, maximum_tools> overflow_{};
+  /// The last way of a tool from one level to another.
+  struct Way {
+    double sense = 0.0;  ///< of the change of the level
+    double size = 0.0;   ///< of the print when the tool arrived, were the level 0; 0 before that
+  };
+  std::array<Way, maximum_tools> way_{};
   double deepest_ = 0.0;
   Limits limits_;
 };

@@ -72,12 +72,19 @@ PALPATE_INLINE double PointLevels::wanted(std::size_t tool) const noexcept {
 }
 
 /// The whole level that a tool goes to; `size`: the points of its print, were the level 0. Levels differ by a factor of
-/// two in points, the limits by more: a level that was just reached stays.
-PALPATE_INLINE double PointLevels::next_goal(std::size_t tool, double size) const noexcept {
-  constexpr double too_few = 0.7, too_many = 1.6;
+/// two in points, the limits by more: a level that was just reached stays. With few points `size` depends on the level,
+/// too. So a tool does not turn back on its way to a level, nor there as long as its print stays as it is.
+PALPATE_INLINE double PointLevels::next_goal(std::size_t tool, double size) noexcept {
+  constexpr double too_few = 0.7, too_many = 1.6, same_print = 1.2;
+  Way& way = way_[tool];
   double goal = goal_[tool];
-  while (goal < most_[tool] && size * std::exp2(-goal) > too_many * wanted(tool)) goal += 1.0;
-  while (goal > least_[tool] && size * std::exp2(-goal) < too_few * wanted(tool)) goal -= 1.0;
+  if (level_[tool] != goal) way.size = 0.0;
+  if (level_[tool] == goal && way.size == 0.0) way.size = size;
+  const bool stays = level_[tool] != goal || std::max(size, way.size) < same_print * std::min(size, way.size);
+  const bool may_rise = !(stays && way.sense < 0.0), may_fall = !(stays && way.sense > 0.0);
+  while (may_rise && goal < most_[tool] && size * std::exp2(-goal) > too_many * wanted(tool)) goal += 1.0;
+  while (may_fall && goal > least_[tool] && size * std::exp2(-goal) < too_few * wanted(tool)) goal -= 1.0;
+  if (goal != goal_[tool]) way.sense = goal - goal_[tool];
   return std::clamp(goal, std::max(least_[tool], with_room_[tool]), crowded_[tool]);
 }
 
@@ -175,6 +182,7 @@ PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& 
     if (!(radius_[t] > 0.0) || used[t] == 0) {
       level_[t] = goal_[t] = touch_level(t);
       overflow_[t] = {};
+      way_[t] = {};
       continue;
     }
     level_[t] += step(t, used[t], growth[t], points[t]);
