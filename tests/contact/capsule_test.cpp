@@ -201,8 +201,8 @@ TEST_CASE("a capsule that presses with its side has the cap and cone of a sphere
     capsule.half_length = half;
     capsule.rotation = rotation_by(random.vector<3>(-2.0, 2.0));
     const Vector3 across = capsule.axis().unitOrthogonal();
-    const Vector3 outward = (across + random.uniform(-0.5, 0.5) * capsule.axis()).normalized();
-    if (!capsule.may_have_cone(outward)) continue;
+    // A tool that rotates in a tick may be steeper than any that gets a cone.
+    const Vector3 outward = (across + random.uniform(-2.0, 2.0) * capsule.axis()).normalized();
     capsule.outward = sphere.outward = outward;
     capsule.entered = sphere.entered = 1.0;
     const Vector3 p = capsule.proxy + random.vector<3>(-12e-3, 12e-3);

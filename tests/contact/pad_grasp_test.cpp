@@ -151,3 +151,21 @@ TEST_CASE("a flat tool that grasped a point pulls it up, and holds it, with a fo
     CHECK(servo.contact_force().z() < -1e-3);
   }
 }
+
+TEST_CASE("a pad smaller than the facet that it grasps is flagged", "[contact][grasp][pad]") {
+  for (const int cells : {3, 30}) {  // facets of 10 and 1 mm
+    test::Pad pad = test::make_pad("z1", 1e4, {cells, cells, 3});
+    ServoOptions options;
+    options.force_limits = test::open_gate();
+    options.grasp_buttons = 1;
+    options.contact.grasp_radius = 2e-3;
+    test::ServoSession session(pad, options);
+    ToolState& state = session.states[0];
+    state.position = Vector3(0.0131, 0.0147, test::pad_height + test::sphere_radius - 3e-4);
+    session.tick();
+    state.buttons = 1;
+    const Status status = session.tick().status;
+    CHECK(session.servo.is_holding());
+    CHECK(status.has(StatusFlag::coarse_contact) == (cells == 3));
+  }
+}

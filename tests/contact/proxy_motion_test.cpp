@@ -20,7 +20,7 @@ std::vector<bool> reported(const std::vector<double>& forces, double path) {
   for (const double force : forces) {
     tool.target += Vector3(path, 0.0, 0.0);
     tool.force = Vector3(0.0, 0.1 * force, force);
-    result.push_back(motion.end_tick({&tool, 1}, true, 1.0));
+    result.push_back(motion.end_tick({&tool, 1}, true, true, 1.0));
   }
   return result;
 }

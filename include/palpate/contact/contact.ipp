@@ -52,12 +52,13 @@ PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const n
   return from_core(p, proxy + along * direction, along * own_axis);
 }
 /// Where on the axis the cone is closest to `p`: the least of sine sqrt(d^2 + x^2) - cosine height, with x the way from
-/// the point whose distance d across `outward` is least.
+/// the point whose distance d across `outward` is least; the lower end where the axis is steeper than the cone.
 PALPATE_INLINE double ContactTool::along_cone(const Vector3& p, const Vector3& direction) const noexcept {
   const double along = outward.dot(direction);
   const Vector3 across = direction - along * outward, offset = p - proxy - outward.dot(p - proxy) * outward;
-  const double length = across.norm(), nearest = offset.dot(across) / (length * length);
-  const double slope = -cone_cosine * along / (cone_sine * length);
+  const double length = across.norm();
+  if (!(cone_cosine * std::abs(along) < cone_sine * length)) return along > 0.0 ? -half_length : half_length;
+  const double nearest = offset.dot(across) / (length * length), slope = -cone_cosine * along / (cone_sine * length);
   const double way = (offset - nearest * across).norm() * slope / std::sqrt(1.0 - slope * slope);
   return std::clamp(nearest + way / length, -half_length, half_length);
 }

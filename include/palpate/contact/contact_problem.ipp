@@ -225,7 +225,9 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
-  if (proxies_.end_tick(tools, rest <= unsettled, rows_.largest_force_scale(tools)))
+  const bool presses = std::any_of(grasps_.begin(), grasps_.end(), [](const Grasp& g) { return g.holds_any(); }) ||
+                       rows_.deepest_push() > 0.0;
+  if (proxies_.end_tick(tools, rest <= unsettled, presses, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   return status;
 }
@@ -544,7 +546,7 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   }
   if (presses_beside_pad(t)) error.parts.mesh = infinity;
   if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
-  coarse_[t] = coarse_[t] || presses_coarse_facets(surface, t, tool, measured);
+  coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured);
   if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
   error.parts.merged = scale_of_force(t, force) * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));

@@ -20,6 +20,8 @@ class Grasp {
   std::span<const int> pad() const noexcept {
     return {vertices_.data(), count_ > 0 && vertices_[0] >= 0 ? static_cast<std::size_t>(count_) : 0};
   }
+  /// Whether a pad is larger than its radius: the triangle in its middle reaches beyond it.
+  bool is_coarse() const noexcept { return count_ > 0 && is_coarse_; }
   std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
   /// Whether a point is grasped, or moves more with grasped vertices than with others: its own row would be stiff.
   bool holds(const ContactSurface& surface, const Candidates& candidates, const Candidate& c) const noexcept;
@@ -41,6 +43,7 @@ class Grasp {
   std::array<Candidate, 3 * most_points> rows_{};
   std::array<int, most_points> vertices_{};  // of a pad; -1: a point within a triangle
   int count_ = 0;                            // points
+  bool is_coarse_ = false;
 };
 
 }}  // namespace palpate

@@ -81,7 +81,10 @@ PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool)
 PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candidates& candidates, const Candidate& point,
                                     const ContactTool& tool, double radius, int most) noexcept {
   const ContactSample& middle = candidates.sample_of(point);
-  const detail::PadSearch near(surface, middle.vertices, Candidates::rest(surface, middle), radius);
+  const Vector3 rest = Candidates::rest(surface, middle);
+  is_coarse_ = std::any_of(middle.vertices.begin(), middle.vertices.end(),
+                           [&](int v) { return (surface.position(v) - rest).norm() > radius; });
+  const detail::PadSearch near(surface, middle.vertices, rest, radius);
   const int points = std::min({near.count(), most, most_points});
   for (int i = 0; i < points; ++i) {
     Candidate c = point;
@@ -107,7 +110,7 @@ PALPATE_INLINE void Grasp::place_pad(const TissueView& tissue, Candidates& candi
 }
 
 PALPATE_INLINE void Grasp::release() noexcept {
-  requested = false;
+  requested = is_coarse_ = false;
   count_ = 0;
 }
 

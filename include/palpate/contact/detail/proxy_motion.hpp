@@ -44,8 +44,9 @@ class ProxyMotion {
   /// not converged although the devices hardly move, steps become shorter, until a device moves, or nothing presses.
   /// They also become longer again, after a time that doubles with every failure: shorter steps cost more of them.
   /// Returns whether the forces go back and forth from tick to tick although no device moves: every tick converges, to
-  /// another state than the one before. `scale`: of the forces [N], as for `relative_change`.
-  bool end_tick(Tools tools, bool converged, double scale) noexcept;
+  /// another state than the one before. `presses`: whether a tool would penetrate without its force, or grasps; shorter
+  /// steps leave a part of the forces of tools that have gone. `scale`: of the forces [N], as for `relative_change`.
+  bool end_tick(Tools tools, bool converged, bool presses, double scale) noexcept;
 
  private:
   static constexpr int patience = 8;                          // ticks

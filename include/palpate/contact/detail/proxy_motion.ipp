@@ -120,12 +120,10 @@ PALPATE_INLINE bool ProxyMotion::alternates(Tools tools, double scale) noexcept 
   return any;
 }
 
-PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged, double scale) noexcept {
+PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged, bool presses, double scale) noexcept {
   const bool moves = std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) {
     return tool.active && tool.path_length() > still * tool.radius;
   });
-  const bool presses =
-      std::any_of(tools.begin(), tools.end(), [](const ContactTool& tool) { return tool.force.squaredNorm() > 0.0; });
   if (moves || !presses) {
     longest_part_ = 1.0;
     restless_ticks_ = settled_ticks_ = 0;
