@@ -748,37 +748,25 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   }
 }
 
-/// The normals of a linearisation depend on the forces of the one before, which depend on its normals: a fixed point.
-/// `feedback_` is the ratio of successive changes of the normals, at most a half: with more, parts of the normals that
-/// do not feed back would swing. From the third linearisation on the secant step of Anderson (1965) with one earlier
-/// state finds the fixed point also where the ratio is above 1, or negative.
+/// The normals of a linearisation depend on the forces of the one before, which depend on its normals. `feedback_` is
+/// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point. The
+/// ratio of the last tick counts less: parts of the normals that do not feed back swing with a large one.
 PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
-  constexpr double most_feedback = 0.5, longest = 2.0;  // of a secant step, in changes of the normals
-  constexpr double least = 1e-16;                       // forces times squares of changes
-  double back = 0.0, moved = 0.0, slope = 0.0, curved = 0.0, made_moved = 0.0, rest = 0.0;
+  constexpr double most = 0.75, most_before = 0.4;
+  double back = 0.0, changed = 0.0;
   for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
     const Candidate& c = *pressing_[at(i)];
-    const NormalHistory& h = c.history;
-    if (h.known < 2) continue;
-    const Vector3 change = c.normal - h.used, turn = change - (h.made_before - h.used_before),
-                  way = h.used - h.used_before, made_way = c.normal - h.made_before;
-    back += c.force * way.dot(made_way);
-    moved += c.force * way.squaredNorm();
-    slope += c.force * change.dot(turn);
-    curved += c.force * turn.squaredNorm();
-    made_moved += c.force * made_way.squaredNorm();
-    rest += c.force * change.squaredNorm();
+    if (c.history.known < 2) continue;
+    const Vector3 before = c.history.used - c.history.used_before;
+    back += c.force * before.dot(c.normal - c.history.made_before);
+    changed += c.force * before.squaredNorm();
   }
-  if (moved > least) feedback_ = std::clamp(back / moved, 0.0, most_feedback);
-  double secant = curved > least ? slope / curved : 0.0;
-  secant *= std::min(1.0, longest * std::sqrt(rest / std::max(secant * secant * made_moved, least)));
+  if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, most);
+  const double ratio = iteration < 2 ? std::min(feedback_, most_before) : feedback_;
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const Vector3 made = c.normal;
-    if (secant != 0.0 && c.history.known > 1)
-      c.normal = (made - secant * (made - c.history.made_before)).normalized();
-    else if (secant == 0.0 && c.history.known > 0)
-      c.normal = (made + feedback_ / (1.0 - feedback_) * (made - c.history.used)).normalized();
+    if (c.history.known > 0) c.normal = (made + ratio / (1.0 - ratio) * (made - c.history.used)).normalized();
     c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
   }
 }

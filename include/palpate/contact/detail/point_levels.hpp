@@ -104,8 +104,9 @@ class PointLevels {
   std::array<Overflow, maximum_tools> overflow_{};
   /// The last way of a tool from one level to another.
   struct Way {
-    double sense = 0.0;  ///< of the change of the level
-    double size = 0.0;   ///< of the print when the tool arrived, were the level 0; 0 before that
+    double sense = 0.0;    ///< of the change of the level
+    bool travels = false;  ///< whether the tool is between levels
+    double size = 0.0;     ///< of the print when that began or ended, were the level 0
   };
   std::array<Way, maximum_tools> way_{};
   double deepest_ = 0.0;

@@ -73,14 +73,15 @@ PALPATE_INLINE double PointLevels::wanted(std::size_t tool) const noexcept {
 
 /// The whole level that a tool goes to; `size`: the points of its print, were the level 0. Levels differ by a factor of
 /// two in points, the limits by more: a level that was just reached stays. With few points `size` depends on the level,
-/// too. So a tool does not turn back on its way to a level, nor there as long as its print stays as it is.
+/// too. So a tool does not turn back on its way to a level, nor there, as long as its print stays as it is.
 PALPATE_INLINE double PointLevels::next_goal(std::size_t tool, double size) noexcept {
   constexpr double too_few = 0.7, too_many = 1.6, same_print = 1.2;
   Way& way = way_[tool];
   double goal = goal_[tool];
-  if (level_[tool] != goal) way.size = 0.0;
-  if (level_[tool] == goal && way.size == 0.0) way.size = size;
-  const bool stays = level_[tool] != goal || std::max(size, way.size) < same_print * std::min(size, way.size);
+  const bool travels = level_[tool] != goal;
+  if (travels != way.travels || way.size == 0.0) way.size = size;
+  way.travels = travels;
+  const bool stays = std::max(size, way.size) < same_print * std::min(size, way.size);
   const bool may_rise = !(stays && way.sense < 0.0), may_fall = !(stays && way.sense > 0.0);
   while (may_rise && goal < most_[tool] && size * std::exp2(-goal) > too_many * wanted(tool)) goal += 1.0;
   while (may_fall && goal > least_[tool] && size * std::exp2(-goal) < too_few * wanted(tool)) goal -= 1.0;
