@@ -225,8 +225,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   if (rest > unsettled || !rows_.has_settled() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
-  const bool presses = std::any_of(grasps_.begin(), grasps_.end(), [](const Grasp& g) { return g.holds_any(); }) ||
-                       rows_.deepest_push() > 0.0;
+  bool presses = rows_.deepest_push() > 0.0;
+  for (const Grasp& g : grasps_) presses = presses || g.holds_any();
   if (proxies_.end_tick(tools, rest <= unsettled, presses, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   return status;

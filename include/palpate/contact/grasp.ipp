@@ -82,8 +82,8 @@ PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candida
                                     const ContactTool& tool, double radius, int most) noexcept {
   const ContactSample& middle = candidates.sample_of(point);
   const Vector3 rest = Candidates::rest(surface, middle);
-  is_coarse_ = std::any_of(middle.vertices.begin(), middle.vertices.end(),
-                           [&](int v) { return (surface.position(v) - rest).norm() > radius; });
+  is_coarse_ = false;
+  for (const int v : middle.vertices) is_coarse_ = is_coarse_ || (surface.position(v) - rest).norm() > radius;
   const detail::PadSearch near(surface, middle.vertices, rest, radius);
   const int points = std::min({near.count(), most, most_points});
   for (int i = 0; i < points; ++i) {
