@@ -10,6 +10,7 @@
 
 #include "catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace palpate;
@@ -52,8 +53,9 @@ TEST_CASE("a capsule on springs: force and torque equal the closed form in any o
     AnalyticTissue tissue(20, 0.03, 2e-2);  // 1.5 mm apart
     const double angle = random.uniform(0.0, 6.28);
     // No end is deeper than half the radius: independent springs are not pushed aside, so that the cone would act.
-    const Vector3 axis(std::cos(angle), std::sin(angle), random.uniform(-0.05, 0.05));
-    const Vector3 end(random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), radius - random.uniform(2e-4, 1e-3));
+    const double depth = random.uniform(2e-4, 1e-3), steepest = std::min(0.15, (0.5 * radius - depth) / half);
+    const Vector3 axis(std::cos(angle), std::sin(angle), random.uniform(-steepest, steepest));
+    const Vector3 end(random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), radius - depth);
     ToolSession s(tissue, {round_tool(radius, end + Vector3(0, 0, 3e-3), 0.0, half, axis)});
     s.move(0, end, 100);
     s.settle();

@@ -59,7 +59,7 @@ Pinch pinch(Lobe& lobe, const Tool& jaw, double radius, double friction) {
 
 }  // namespace
 
-TEST_CASE("jaws with friction that swing a lobe hold it, and nearly all ticks converge", "[haptic][servo][pinch]") {
+TEST_CASE("jaws with friction that swing a lobe hold it, and few ticks do not converge", "[haptic][servo][pinch]") {
   Scene scene;
   scene.fix("x0").touch("surface");
   Lobe lobe(box_tet4(Vector3(0.04, 0.012, 0.006), {20, 6, 3}), scene,

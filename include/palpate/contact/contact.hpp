@@ -91,10 +91,6 @@ struct ContactTool {
     if (outward.squaredNorm() > 0.0) return closest_pressed(p);
     return half_length > 0.0 ? closest_extended(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
   }
-  /// Whether the core is within a distance of `p`; true for some points that are slightly farther from a hull.
-  bool is_within(const Vector3& p, double distance) const noexcept {
-    return half_length > 0.0 ? is_within_extended(p, distance) : (p - proxy).squaredNorm() <= distance * distance;
-  }
   /// Upper bound of the displacement of any point of the core by a change of its rotation matrix [m].
   double core_path(const Matrix3& change) const noexcept;
   /// Centre of a sphere that contains the core [m].
@@ -130,7 +126,6 @@ struct ContactTool {
   CorePoint closest_extended(const Vector3& p) const noexcept;
   CorePoint closest_pressed(const Vector3& p) const noexcept;
   double along_cone(const Vector3& p, const Vector3& direction) const noexcept;
-  bool is_within_extended(const Vector3& p, double distance) const noexcept;
   double along_capsule(const Vector3& p, const Vector3& direction) const noexcept {
     return std::clamp(direction.dot(p - proxy), -half_length, half_length);
   }

@@ -92,11 +92,6 @@ PALPATE_INLINE double ContactTool::cone_path(const Vector3& outward_before, doub
   if (!(std::max(now, before) > begin)) return 0.0;
   return (outward - outward_before).norm() * radius + 1.1 * std::abs(now - before);
 }
-PALPATE_INLINE bool ContactTool::is_within_extended(const Vector3& p, double distance) const noexcept {
-  if (hull != nullptr) return hull->may_be_within(rotation.transpose() * (p - proxy), distance);
-  const Vector3 direction = axis();
-  return (p - proxy - along_capsule(p, direction) * direction).squaredNorm() <= distance * distance;
-}
 PALPATE_INLINE double ContactTool::core_path(const Matrix3& change) const noexcept {
   if (half_length == 0.0) return 0.0;
   if (hull == nullptr) return half_length * (change * own_axis).norm();

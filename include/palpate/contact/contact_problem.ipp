@@ -274,11 +274,10 @@ PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept 
 }
 
 /// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
-/// smaller by the same ratio are a geometric series. Where one grows, and the last is not small, the tool leaves an
-/// equilibrium that is not stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation
-/// before.
+/// smaller by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not
+/// stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
 PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
-  if (change > growing && (rest == infinity || change >= before)) return infinity;
+  if (rest == infinity || (change >= before && change > growing)) return infinity;
   return change < before ? std::max(change, change * change / (before - change)) : change;
 }
 

@@ -47,9 +47,6 @@ class ConvexHull {
   /// A lower bound of the signed distance, by the planes of the faces and, of a plane polygon, of its sides [m]; exact
   /// inside. -infinity without faces.
   double least_distance(const Vector3& p) const noexcept;
-  /// False only for points farther from the hull than a distance >= 0: those outside of its sphere, or above the plane
-  /// of a face, by more.
-  bool may_be_within(const Vector3& p, double distance) const noexcept;
 
  private:
   struct Face {

@@ -287,15 +287,6 @@ PALPATE_INLINE double ConvexHull::least_distance(const Vector3& p) const noexcep
   return highest;
 }
 
-PALPATE_INLINE bool ConvexHull::may_be_within(const Vector3& p, double distance) const noexcept {
-  if ((p - middle_).squaredNorm() > (distance + radius_) * (distance + radius_)) return false;
-  for (const Face& face : faces_)
-    if (face.height(p) > distance) return false;
-  for (int i = 0; dimension_ == 2 && i < faces_[0].end; ++i)
-    if (sides_[static_cast<std::size_t>(i)].height(p) > distance) return false;
-  return true;
-}
-
 PALPATE_INLINE ConvexHull::Closest ConvexHull::closest(const Vector3& p) const noexcept {
   std::array<double, maximum_faces> heights;
   heights[0] = -infinity;

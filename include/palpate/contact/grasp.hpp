@@ -23,7 +23,7 @@ class Grasp {
   /// Whether a pad is larger than its radius: the triangle in its middle reaches beyond it.
   bool is_coarse() const noexcept { return count_ > 0 && is_coarse_; }
   std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
-  /// Whether a point is grasped, or moves more with grasped vertices than with others: its own row would be stiff.
+  /// Whether a point is grasped, or lies within the disc of a grasped point: a row of its own would be stiff.
   bool holds(const ContactSurface& surface, const Candidates& candidates, const Candidate& c) const noexcept;
 
   /// Grasps this point at its present place on the tool.
@@ -43,7 +43,7 @@ class Grasp {
   std::array<Candidate, 3 * most_points> rows_{};
   std::array<int, most_points> vertices_{};  // of a pad; -1: a point within a triangle
   int count_ = 0;                            // points
-  bool is_coarse_ = false;
+  bool is_coarse_ = false;                   // of a pad
 };
 
 }}  // namespace palpate
