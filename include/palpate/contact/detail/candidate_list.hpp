@@ -105,4 +105,48 @@ class CandidateList {
   int count_ = 0;
 };
 
+/// The candidate of a list with the largest gap, the first one of several: a binary heap of their gaps (Williams 1964).
+/// Nothing allocates after construction.
+class FarthestCandidate {
+ public:
+  explicit FarthestCandidate(std::size_t maximum) { heap_.reserve(maximum); }
+  bool is_known() const noexcept { return !heap_.empty(); }
+  void forget() noexcept { heap_.clear(); }
+  /// Collects all candidates from number `first` on, at least one. O(number of candidates).
+  void collect(std::span<const Candidate> candidates, int first) noexcept {
+    heap_.clear();
+    for (int i = first; i < static_cast<int>(candidates.size()); ++i)
+      heap_.push_back({candidates[static_cast<std::size_t>(i)].gap, i});
+    for (std::size_t i = heap_.size() / 2; i-- > 0;) sink(i);
+  }
+  int number() const noexcept { return heap_[0].number; }
+  double gap() const noexcept { return heap_[0].gap; }
+  /// The candidate with that number has become another one, with this gap. O(log(number of candidates)).
+  void replace(double gap) noexcept {
+    heap_[0].gap = gap;
+    sink(0);
+  }
+
+ private:
+  struct Entry {
+    double gap;
+    int number;
+    bool is_before(const Entry& other) const noexcept {
+      return gap > other.gap || (gap == other.gap && number < other.number);
+    }
+  };
+  void sink(std::size_t i) noexcept {
+    const Entry entry = heap_[i];
+    for (std::size_t child = 2 * i + 1; child < heap_.size(); child = 2 * i + 1) {
+      if (child + 1 < heap_.size() && heap_[child + 1].is_before(heap_[child])) ++child;
+      if (!heap_[child].is_before(entry)) break;
+      heap_[i] = heap_[child];
+      i = child;
+    }
+    heap_[i] = entry;
+  }
+
+  std::vector<Entry> heap_;
+};
+
 }}  // namespace palpate

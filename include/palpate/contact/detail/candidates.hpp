@@ -162,7 +162,9 @@ class Candidates {
   static double until(const Candidate& c) noexcept { return c.gap + c.seen; }
 
   struct List {
+    explicit List(std::size_t maximum) : points(maximum), farthest(maximum) {}
     CandidateList points;
+    FarthestCandidate farthest;  // of the others, once the list is full
     int room = 0, kept = 0;                              // kept: points that press, before the others
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
     double reach = 0.0;                                  // of the surface when the search began

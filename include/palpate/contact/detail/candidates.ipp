@@ -20,8 +20,8 @@ PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<co
                                       int capacity)
     : samples_(std::move(samples)),
       subfacet_(std::move(subfacet)),
-      list_{CandidateList(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room))},
-      next_list_{list_.points},
+      list_(std::max<std::size_t>(4 * static_cast<std::size_t>(capacity), least_room)),
+      next_list_(static_cast<std::size_t>(list_.points.maximum())),
       loaded_(static_cast<std::size_t>(capacity)),
       near_(static_cast<std::size_t>(list_.points.maximum())) {
   reset();

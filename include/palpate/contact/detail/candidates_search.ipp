@@ -146,6 +146,7 @@ PALPATE_INLINE void Candidates::begin(Search& search, List& list, int room) cons
   search.runs = true;
   search.ends = search.in_parts = false;
   list.points.clear();
+  list.farthest.forget();
   list.kept = 0;
   list.room = room;
   list.surface_built = surface_travel_;
@@ -246,12 +247,14 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
     points.add(c);
     return;
   }
-  const auto others = points.items().subspan(static_cast<std::size_t>(list.kept));
-  const Candidate& farthest = *std::max_element(others.begin(), others.end(),
-                                                [](const Candidate& a, const Candidate& b) { return a.gap < b.gap; });
-  double& lost = list.range[farthest.gap > c.gap ? static_cast<std::size_t>(farthest.tool) : search.tool];
-  lost = std::min(lost, std::max(c.gap, farthest.gap));
-  if (farthest.gap > c.gap) points.replace(static_cast<int>(&farthest - &points[0]), c);
+  if (!list.farthest.is_known()) list.farthest.collect(points.items(), list.kept);
+  const int number = list.farthest.number();
+  const double farthest = list.farthest.gap();
+  double& lost = list.range[farthest > c.gap ? static_cast<std::size_t>(points[number].tool) : search.tool];
+  lost = std::min(lost, std::max(c.gap, farthest));
+  if (!(farthest > c.gap)) return;
+  points.replace(number, c);
+  list.farthest.replace(c.gap);
 }
 
 }}  // namespace palpate
