@@ -103,6 +103,7 @@ class ContactProblem {
   static constexpr double growing = 0.005;             // the same where a change is larger than the one before
   static constexpr double first_change_safety = 10.0;  // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;      // factor on the estimate after one linearisation
+  static constexpr double largest_feedback = 0.75;     // of the normals of two linearisations
   static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
   static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest push
@@ -156,6 +157,7 @@ class ContactProblem {
   void follow(const TissueView& tissue, Tools tools) noexcept;
   void set_outward(const ContactSurface& surface, Tools tools) noexcept;
   void note_forces_of_lifted(Tools tools) noexcept;
+  void limit_feedback(bool converged, bool grows) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
 
@@ -175,7 +177,7 @@ class ContactProblem {
   std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
   bool late_ = false;                             // a column of the compliance is missing
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
-  double feedback_ = 0.0;
+  double feedback_ = 0.0, most_feedback_ = largest_feedback;
   double of_lifted_ = 0.0;       // forces of tools that are gone, which are still on the tissue [N]
   double most_of_lifted_ = 0.0;  // of them, since the tools have gone
   double floor_ = 0.0;

@@ -213,6 +213,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
     const bool converged = has_converged(tools, iteration, before, change);
     rest = converged ? change : rest_of_changes(iteration > 1 ? before : infinity, change, rest);
+    limit_feedback(converged, iteration > 0 && change > before);
     if (converged) break;
     before = change;
   }
@@ -590,6 +591,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
   feedback_ = of_lifted_ = most_of_lifted_ = 0.0;
+  most_feedback_ = largest_feedback;
 }
 
 /// The middle of the points that a tool pressed in the last solution, weighted by their forces; zero without force [m].
@@ -748,10 +750,11 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
 }
 
 /// The normals of a linearisation depend on the forces of the one before, which depend on its normals. `feedback_` is
-/// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point. The
-/// ratio of the last tick counts less: parts of the normals that do not feed back swing with a large one.
+/// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point. Parts
+/// of the normals that do not feed back swing with a large ratio. Therefore that of the last tick counts less, and
+/// where forces still change, `most_feedback_` gets smaller.
 PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
-  constexpr double most = 0.75, most_before = 0.4;
+  constexpr double most_before = 0.4;
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
     const Candidate& c = *pressing_[at(i)];
@@ -760,14 +763,24 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
     back += c.force * before.dot(c.normal - c.history.made_before);
     changed += c.force * before.squaredNorm();
   }
-  if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, most);
-  const double ratio = iteration < 2 ? std::min(feedback_, most_before) : feedback_;
+  if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, largest_feedback);
+  const double ratio = std::min({feedback_, most_feedback_, iteration < 2 ? most_before : largest_feedback});
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const Vector3 made = c.normal;
     if (c.history.known > 0) c.normal = (made + ratio / (1.0 - ratio) * (made - c.history.used)).normalized();
     c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
   }
+}
+
+/// Half the feedback after a linearisation in which the force changed by more than in the one before; a tenth more
+/// after each tick that has converged.
+PALPATE_INLINE void ContactProblem::limit_feedback(bool converged, bool grows) noexcept {
+  constexpr double smaller = 0.5, larger = 1.1, least_step = 0.01;
+  if (converged)
+    most_feedback_ = std::min(largest_feedback, larger * most_feedback_ + least_step);
+  else if (grows)
+    most_feedback_ *= smaller;
 }
 
 /// Adds rows for the points that would penetrate deepest with the present forces. Where there is no room because all
