@@ -73,5 +73,5 @@ TEST_CASE("jaws with friction that swing a lobe hold it, and few ticks do not co
       CHECK_FALSE(result.crossed);
       unconverged += result.unconverged;
     }
-  CHECK(unconverged <= 450);  // of 12,000
+  CHECK(unconverged <= 100);  // of 12,000
 }

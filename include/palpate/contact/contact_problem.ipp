@@ -773,11 +773,16 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   }
 }
 
-/// Half the feedback after a linearisation in which the force changed by more than in the one before; a tenth more
-/// after each tick that has converged.
+/// Where several tools press, perhaps against each other: half the feedback after a linearisation in which the force
+/// changed by more than in the one before, a tenth more after each tick that has converged. The normals of a single
+/// tool change together, so that their ratio can be trusted.
 PALPATE_INLINE void ContactProblem::limit_feedback(bool converged, bool grows) noexcept {
   constexpr double smaller = 0.5, larger = 1.1, least_step = 0.01;
-  if (converged)
+  int pressing = 0;
+  for (const int points : pressing_of_) pressing += points > 0;
+  if (pressing < 2)
+    most_feedback_ = largest_feedback;
+  else if (converged)
     most_feedback_ = std::min(largest_feedback, larger * most_feedback_ + least_step);
   else if (grows)
     most_feedback_ *= smaller;
