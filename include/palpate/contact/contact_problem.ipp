@@ -177,6 +177,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   Status status;
   floor_ = tissue.compliance_floor();
   rounds_left_ = maximum_rounds;
+  late_ = false;
   status |= tissue.require_columns({});  // before the revision is read
   note_forces_of_lifted(tools);
   set_outward(tissue.contact_surface(), tools);
@@ -691,7 +692,6 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
       c.lift();  // only rows carry forces
   }
   if (rows_.count() == 0) rows_.apply(tissue, candidates_, tools, displacement_);
-  late_ = false;
   int built = 0;
   for (;; built = rows_.count()) {
     if (built > 0 || rows_.count() == 0) add_violated(tissue, tools, built);
@@ -702,7 +702,7 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
     }
     const Status columns = rows_.require_columns(tissue);
     status |= columns;
-    late_ = columns.has(StatusFlag::degraded_model);
+    late_ = late_ || columns.has(StatusFlag::degraded_model);
     rows_.build(tissue, candidates_, tools, floor_, built);
     if (!rows_.solve(built)) status.set(StatusFlag::solver_not_converged);
     rows_.apply(tissue, candidates_, tools, displacement_);

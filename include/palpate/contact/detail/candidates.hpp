@@ -164,7 +164,7 @@ class Candidates {
   struct List {
     explicit List(std::size_t maximum) : points(maximum), farthest(maximum) {}
     CandidateList points;
-    FarthestCandidate farthest;  // of the others, once the list is full
+    FarthestCandidate farthest;                          // of the others, once the list is full
     int room = 0, kept = 0;                              // kept: points that press, before the others
     std::array<double, maximum_tools> range{}, built{};  // range: gaps up to which it was complete at travel `built`
     double reach = 0.0;                                  // of the surface when the search began
