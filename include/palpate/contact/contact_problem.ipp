@@ -764,7 +764,7 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
     changed += c.force * before.squaredNorm();
   }
   if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, largest_feedback);
-  const double ratio = std::min({feedback_, most_feedback_, iteration < 2 ? most_before : largest_feedback});
+  const double ratio = std::min(std::min(feedback_, most_feedback_), iteration < 2 ? most_before : largest_feedback);
   for (int i = 0; i < pressing_count_; ++i) {
     Candidate& c = *pressing_[at(i)];
     const Vector3 made = c.normal;

@@ -105,48 +105,49 @@ class CandidateList {
   int count_ = 0;
 };
 
-/// The candidate of a list with the largest gap, the first one of several: a binary heap of their gaps (Williams 1964).
-/// Nothing allocates after construction.
+/// The candidate of a list with the largest gap, the first one of several: a binary heap (Williams 1964). Nothing
+/// allocates after construction.
 class FarthestCandidate {
  public:
-  explicit FarthestCandidate(std::size_t maximum) { heap_.reserve(maximum); }
-  bool is_known() const noexcept { return !heap_.empty(); }
-  void forget() noexcept { heap_.clear(); }
+  explicit FarthestCandidate(std::size_t maximum) : gap_(maximum), heap_(maximum) {}
+  bool is_known() const noexcept { return count_ > 0; }
+  void forget() noexcept { count_ = 0; }
   /// Collects all candidates from number `first` on, at least one. O(number of candidates).
   void collect(std::span<const Candidate> candidates, int first) noexcept {
-    heap_.clear();
-    for (int i = first; i < static_cast<int>(candidates.size()); ++i)
-      heap_.push_back({candidates[static_cast<std::size_t>(i)].gap, i});
-    for (std::size_t i = heap_.size() / 2; i-- > 0;) sink(i);
+    count_ = 0;
+    for (std::size_t i = at(first); i < candidates.size(); ++i) {
+      gap_[i] = candidates[i].gap;
+      heap_[count_++] = static_cast<int>(i);
+    }
+    for (std::size_t place = count_ / 2; place-- > 0;) sink(place);
   }
-  int number() const noexcept { return heap_[0].number; }
-  double gap() const noexcept { return heap_[0].gap; }
+  int number() const noexcept { return heap_[0]; }
+  double gap() const noexcept { return gap_[at(heap_[0])]; }
   /// The candidate with that number has become another one, with this gap. O(log(number of candidates)).
   void replace(double gap) noexcept {
-    heap_[0].gap = gap;
+    gap_[at(heap_[0])] = gap;
     sink(0);
   }
 
  private:
-  struct Entry {
-    double gap;
-    int number;
-    bool is_before(const Entry& other) const noexcept {
-      return gap > other.gap || (gap == other.gap && number < other.number);
+  static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  bool is_before(int a, int b) const noexcept {
+    return gap_[at(a)] > gap_[at(b)] || (gap_[at(a)] == gap_[at(b)] && a < b);
+  }
+  void sink(std::size_t place) noexcept {
+    const int number = heap_[place];
+    for (std::size_t child = 2 * place + 1; child < count_; child = 2 * place + 1) {
+      if (child + 1 < count_ && is_before(heap_[child + 1], heap_[child])) ++child;
+      if (!is_before(heap_[child], number)) break;
+      heap_[place] = heap_[child];
+      place = child;
     }
-  };
-  void sink(std::size_t i) noexcept {
-    const Entry entry = heap_[i];
-    for (std::size_t child = 2 * i + 1; child < heap_.size(); child = 2 * i + 1) {
-      if (child + 1 < heap_.size() && heap_[child + 1].is_before(heap_[child])) ++child;
-      if (!heap_[child].is_before(entry)) break;
-      heap_[i] = heap_[child];
-      i = child;
-    }
-    heap_[i] = entry;
+    heap_[place] = number;
   }
 
-  std::vector<Entry> heap_;
+  std::vector<double> gap_;  // per candidate
+  std::vector<int> heap_;    // numbers of candidates
+  std::size_t count_ = 0;    // of the heap
 };
 
 }}  // namespace palpate
