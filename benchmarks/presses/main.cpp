@@ -1,5 +1,6 @@
 // Random presses, slides, pinches and grasps, and what is wrong with their forces. Returns 1 if tissue is swallowed, a
-// force without a flag pulls a tool on, a slide ripples by more than 2 %, or a pinch with friction or a grasp is lost.
+// force without a flag pulls a tool on, a slide ripples by more than 2 % or has a side force of 1 %, jaws with friction
+// cross or lose what they pinch, or a grasp fails, changes the force by a tenth or does not rest.
 //   bench_presses [--runs <number>] [--only deep|slides|pinches|grasps]
 #include "../common/row.hpp"
 #include "presses.hpp"

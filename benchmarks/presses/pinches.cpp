@@ -13,7 +13,7 @@ namespace presses {
 namespace {
 
 struct Pinch {
-  int unconverged = 0, silent_jumps = 0;  ///< ticks of both hands
+  int unconverged = 0;  ///< ticks of either hand
   bool crossed = false, lost = false;
 };
 
@@ -58,7 +58,7 @@ bool pinches(int runs) {
   scene.fix("x0").touch("surface");
   Tissue lobe(box_tet4(Vector3(0.04, 0.012, 0.006), {20, 6, 3}), scene, {.youngs_modulus = 2e4, .poisson_ratio = 0.45});
   testing::Random random(19);
-  std::printf("\npinches of a lobe of 6 mm by two hands, the most of %d places; unconverged ticks [%%]\n", runs);
+  std::printf("\npinches of a lobe of 6 mm by two hands at %d places; unconverged ticks, mean [%%]\n", runs);
   std::printf("%-8s %9s %7s %8s %5s %12s\n", "jaws", "friction", "hands", "crossed", "lost", "unconverged");
   bool right = true;
   for (const Shape shape : {Shape::sphere, Shape::capsule, Shape::box})

@@ -21,6 +21,11 @@ enum class Shape { sphere, capsule, box };
 Tool tool_of(Shape shape, double radius);
 const char* name_of(Shape shape) noexcept;
 
+/// The larger of two numbers; NaN stays.
+inline double larger(double a, double b) noexcept {
+  return b <= a ? a : b;
+}
+
 /// Limits that let every force pass.
 ForceLimits open_gate() noexcept;
 

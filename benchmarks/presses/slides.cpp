@@ -107,7 +107,7 @@ bool slides(int runs) {
           const double direction = random.uniform(0.0, 6.28);
           const Vector3 start = place - 10e-3 * Vector3(std::cos(direction), std::sin(direction), 0.0);
           const Slide s = slide(tissue, top, radius, part * radius, start, direction);
-          worst = {std::max(worst.ripple, s.ripple), std::max(worst.side, s.side), std::max(worst.closed, s.closed)};
+          worst = {larger(worst.ripple, s.ripple), larger(worst.side, s.side), larger(worst.closed, s.closed)};
         }
         std::printf("%7.1f mm %5.0f mm %8.4f %8.2f %8.2f %8.2f\n", 60.0 / cells, 1e3 * radius, part,
                     100.0 * worst.ripple, 100.0 * worst.side, 100.0 * worst.closed);

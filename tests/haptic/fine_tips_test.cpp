@@ -52,6 +52,6 @@ TEST_CASE("a fine tip does not lose the tissue: radii of 1/20 to 1/5 of a facet"
         const Press p = press(pad, radius, depth, x, y);
         CHECK(p.reacquired == 0);
         CHECK(p.lost == 0);
-        CHECK(p.change <= 0.07);  // ten radii deep it takes half a second to settle, flagged
+        CHECK(p.change <= (depth < 8.0 * radius ? 0.06 : 0.07));  // the deepest tips take longer to settle
       }
 }

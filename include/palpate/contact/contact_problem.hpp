@@ -175,7 +175,7 @@ class ContactProblem {
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
   std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
-  bool late_ = false;                             // a column of the compliance was missing in this tick
+  bool late_ = false;                             // a column of the compliance was missing in the last `solve`
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
   double feedback_ = 0.0, most_feedback_ = largest_feedback;
   double of_lifted_ = 0.0;       // forces of tools that are gone, which are still on the tissue [N]

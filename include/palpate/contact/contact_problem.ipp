@@ -276,8 +276,8 @@ PALPATE_INLINE void ContactProblem::note_forces_of_lifted(Tools tools) noexcept 
 }
 
 /// What may be missing from a force that has not converged: at least its last change, `change`. Changes that get
-/// smaller by the same ratio are a geometric series. Where one grows, the tool leaves an equilibrium that is not
-/// stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
+/// smaller by the same ratio are a geometric series. Where one grows and is not small, the tool leaves an equilibrium
+/// that is not stable: rounding decides how far it gets in this tick. `rest` is that of the linearisation before.
 PALPATE_INLINE double ContactProblem::rest_of_changes(double before, double change, double rest) noexcept {
   if (rest == infinity || (change >= before && change > growing)) return infinity;
   return change < before ? std::max(change, change * change / (before - change)) : change;
@@ -751,8 +751,8 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
 
 /// The normals of a linearisation depend on the forces of the one before, which depend on its normals. `feedback_` is
 /// the ratio of successive changes of the normals; a Newton step on that scalar extrapolates to the fixed point. Parts
-/// of the normals that do not feed back swing with a large ratio. Therefore that of the last tick counts less, and
-/// where forces still change, `most_feedback_` gets smaller.
+/// of the normals that do not feed back swing with a large ratio: that of the last tick counts less, and
+/// `most_feedback_` is a limit.
 PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   constexpr double most_before = 0.4;
   double back = 0.0, changed = 0.0;

@@ -23,7 +23,8 @@ class Grasp {
   /// Whether a pad is larger than its radius: the triangle in its middle reaches beyond it.
   bool is_coarse() const noexcept { return count_ > 0 && is_coarse_; }
   std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
-  /// Whether a point is grasped, or lies within the disc of a grasped point: a row of its own would be stiff.
+  /// Whether a row of its own would be stiff: of a point that is grasped, lies within the disc of a grasped point, or
+  /// moves more with the vertices of a pad than with others.
   bool holds(const ContactSurface& surface, const Candidates& candidates, const Candidate& c) const noexcept;
 
   /// Grasps this point at its present place on the tool.
