@@ -1,9 +1,9 @@
 // Presses to three radii: is tissue swallowed, does a force point the wrong way, does it fall?
 #include "presses.hpp"
 
+#include <palpate/cut.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/cut.hpp>
 
 #include <Eigen/Geometry>
 
@@ -19,14 +19,14 @@ using CutTissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<Selectiv
 
 struct Counts {
   int runs = 0;
-  int swallowed = 0;    ///< no force at the end, without lost_contact, though the tool is not beside the body
-  int wrong = 0;        ///< with a tick that pulls the tool on, within 60 degrees, without lost_contact
-  int silent = 0;       ///< with a tick that pulls the tool on without any flag
-  int lost = 0;         ///< with lost_contact in any tick
-  int fell = 0;         ///< with a fall of more than 2 % while contact is not lost
-  int fell_silent = 0;  ///< the same in ticks without any flag
-  double most_silent = 0.0;
-  std::vector<double> falls;
+  int swallowed = 0;          ///< no force at the end, without lost_contact, though the tool is not beside the body
+  int wrong = 0;              ///< with a tick that pulls the tool on, within 60 degrees, without lost_contact
+  int silent = 0;             ///< with a tick that pulls the tool on without any flag
+  int lost = 0;               ///< with lost_contact in any tick
+  int fell = 0;               ///< with a fall of more than 2 % while contact is not lost
+  int fell_silent = 0;        ///< the same in ticks without any flag
+  double most_silent = 0.0;   ///< largest of these falls, relative to the largest force
+  std::vector<double> falls;  ///< largest of every run, relative to its largest force
 };
 
 /// A place on the surface of a model, and the way into it.

@@ -773,7 +773,7 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   }
 }
 
-/// Where several tools press, perhaps against each other: half the feedback after a linearisation in which the force
+/// Where several tools press, perhaps against each other: the limit is halved after a linearisation in which the force
 /// changed by more than in the one before, a tenth more after each tick that has converged. The normals of a single
 /// tool change together, so that their ratio can be trusted.
 PALPATE_INLINE void ContactProblem::limit_feedback(bool converged, bool grows) noexcept {
