@@ -32,6 +32,7 @@ struct DeepPress {
   double largest_fall = 0.0;      ///< of the force below an earlier one, relative to that
   double least = 0.0;             ///< force [N]
   Status status;
+  int flagged = 0;  ///< ticks of the last 1,000 with `coarse_contact`
 };
 
 const Vector3 size(0.06, 0.06, 0.02);
@@ -61,6 +62,7 @@ DeepPress press(const Mesh<E>& mesh, const Material& material,
     state.time = state.now = time;
     const Status status = servo.tick(std::array{state})[0].status;
     if (k > 100) result.status |= status;
+    result.flagged += k > 50 && status.has(StatusFlag::coarse_contact);
     const double force = servo.contact_force()[2];
     most = std::max(most, force);
     result.least = std::min(result.least, force);
@@ -145,6 +147,14 @@ TEST_CASE("deep presses on facets as long as the radius are flagged", "[haptic][
   const DeepPress found = press(copy_mesh<Smoothed<Tet4>>(pad(6)), NeoHookeanLogarithmic{5e3, 0.45, 1000.0});
   CHECK(found.status.has(StatusFlag::coarse_contact));
   CHECK(found.least >= 0.0);
+}
+
+TEST_CASE("deep presses on one quadratic element through the thickness are flagged", "[haptic][deep_press]") {
+  using namespace deep_press;
+  const auto one = promote<Tet10>(box_tet4(Vector3(5.0, 5.0, 1.0) * radius, {5, 5, 1}, BoxSplit::six));
+  const DeepPress found =
+      press(one, NeoHookeanLogarithmic{5e3, 0.45, 1000.0}, {.inertia = false}, Vector3(2.53, 2.48, 1.0) * radius);
+  CHECK(found.flagged > 900);
 }
 
 TEST_CASE("steps of nearly incompressible quadratic elements converge below a sphere pressed by its radius",

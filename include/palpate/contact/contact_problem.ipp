@@ -420,9 +420,10 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
   constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
   double longest = tool.radius / coarse;
-  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * depth));
-  const double longest_stretched =
-      surface.has_large_strain() && depth > deep * tool.radius ? long_for_deep * tool.point_scale() : infinity;
+  const bool is_deep = surface.has_large_strain() && depth > deep * tool.radius;
+  const double shown = is_deep ? deep * tool.radius : depth;  // the stretch of a deeper dent needs the same facets
+  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * shown));
+  const double longest_stretched = is_deep ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
   int points = 0;  // with an area
   for (int i = 0; i < rows_.count(); ++i) {

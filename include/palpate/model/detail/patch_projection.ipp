@@ -285,10 +285,11 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
          good;
 }
 
-/// Depth of the nearest node below the middle of the patch that is fixed along the normal, in edges; infinite where
-/// there is none. What such nodes do to a dent changes within a facet if they are near, and then the compliance that
-/// remains without the half-space is not smooth: its sum with the half-space may not even be positive definite. Nodes
-/// up to about an edge aside count too: in an unstructured mesh none may be straight below.
+/// Depth of the nearest node below the middle of the patch that is fixed along the normal, in lengths between nodes
+/// (half an edge of a quadratic element); infinite where there is none. What such nodes do to a dent changes within a
+/// facet if they are near, and then the compliance that remains without the half-space is not smooth: its sum with the
+/// half-space may not even be positive definite. Nodes up to about a length aside count too: in an unstructured mesh
+/// none may be straight below.
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
   constexpr double beside = 1.2, surface = 0.05;  // edges
   const double length = source_.boundary.length(middle);
@@ -310,9 +311,9 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   const UniformStiffness& stiffness = source_.stiffness[static_cast<std::size_t>(material.stiffness)];
   patch_.find(middle, normal);
   if (patch_.is_cut()) marks.set(HalfSpaceMark::near_edge);
-  constexpr double near = 1.3, too_near = 0.7;
+  constexpr double near = 1.3, too_near = 0.7;  // edges of elements, lengths between nodes
   const double support = support_below(middle, normal);
-  if (support < near) marks.set(HalfSpaceMark::near_support);
+  if (support < near * source_.mesh.element.order) marks.set(HalfSpaceMark::near_support);
   if (support < too_near) return marks.set(HalfSpaceMark::thin);
   const HalfSpaceField field(stiffness.shear_modulus, stiffness.poisson_ratio, normal);
   load_.compute(patch_, field, normal, right_);
