@@ -86,17 +86,24 @@ void check(const DeepPress& found, const std::array<double, 4>& exact, double mo
 struct Rest {
   Vector3 force = Vector3::Zero();  ///< [N]
   double change = 0.0;              ///< of its size, relative to the largest
+  int flagged = 0;                  ///< ticks with `solver_not_converged`
 };
 
-/// Presses a sphere by 6 mm in 0.3 s, drags it by 10 mm in 0.5 s and holds it; the last 0.3 s of 1.2 s.
-Rest rest_after_drag(double friction, bool inertia) {
+struct Drag {
+  double friction = 0.0;
+  bool inertia = false;
+  double step = 0.016, depth = 0.006, length = 0.01;  // [s], [m]
+};
+
+/// Presses a sphere with 20 mm/s, drags it with 20 mm/s and holds it; the last 0.3 s of 2 s.
+Rest rest_after(const Drag& drag) {
   HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<float>>> tissue(
       copy_mesh<Smoothed<Tet4>>(pad(12)), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0}, {},
-      {.inertia = inertia, .mass_damping = 5.0});
+      {.step = drag.step, .inertia = drag.inertia, .mass_damping = 5.0});
   ServoOptions options;
   options.device.peak_force = options.device.continuous_force = 100.0;
   options.coupling_stiffness = infinity;
-  options.contact.friction = friction;
+  options.contact.friction = drag.friction;
   HapticServo servo(tissue, SphereTool{.radius = radius}, options);
   Rest rest;
   double next = 0.0, least = infinity, most = 0.0;
@@ -104,11 +111,13 @@ Rest rest_after_drag(double friction, bool inertia) {
     const double time = 1e-3 * k;
     for (; time >= next - 1e-9; next += tissue.step()) tissue.advance();
     ToolState state;
-    state.position = Vector3(0.0257 + 0.02 * std::clamp(time - 0.3, 0.0, 0.5), 0.0311,
-                             size[2] + radius - 0.02 * std::min(time, 0.3));
+    const double way = 0.02 * time;
+    state.position = Vector3(0.0257 + std::clamp(way - drag.depth, 0.0, drag.length), 0.0311,
+                             size[2] + radius - std::min(way, drag.depth));
     state.time = state.now = time;
-    servo.tick(std::array{state});
+    const Status status = servo.tick(std::array{state})[0].status;
     if (k < 1700) continue;
+    rest.flagged += status.has(StatusFlag::solver_not_converged);
     rest.force = servo.contact_force();
     least = std::min(least, rest.force.norm());
     most = std::max(most, rest.force.norm());
@@ -168,9 +177,29 @@ TEST_CASE("steps of nearly incompressible quadratic elements converge below a sp
 
 TEST_CASE("a sphere that was dragged with friction comes to rest, with inertia as without", "[haptic][deep_press]") {
   const double friction = GENERATE(0.3, 0.5);
-  const deep_press::Rest still = deep_press::rest_after_drag(friction, false);
-  const deep_press::Rest moving = deep_press::rest_after_drag(friction, true);
+  const deep_press::Rest still = deep_press::rest_after({friction, false});
+  const deep_press::Rest moving = deep_press::rest_after({friction, true});
   CHECK(still.change < 0.01);
   CHECK(moving.change < 0.01);
   CHECK((moving.force - still.force).norm() < 0.1 * still.force.norm());
+}
+
+TEST_CASE("a sphere that sticks to stretched tissue comes to rest for any step length", "[haptic][deep_press]") {
+  const deep_press::Rest longest = deep_press::rest_after({1.0, false, 0.016, 0.007});
+  for (const double step : {0.001, 0.004}) {
+    const deep_press::Rest rest = deep_press::rest_after({1.0, false, step, 0.007});
+    CHECK(rest.change < 0.01);
+    CHECK((rest.force - longest.force).norm() < 0.05 * longest.force.norm());
+  }
+}
+
+TEST_CASE("a sphere rests on tissue that moves in short steps", "[haptic][deep_press]") {
+  CHECK(deep_press::rest_after({0.0, true, 0.001, 0.003, 0.0}).change < 0.02);
+}
+
+TEST_CASE("a sphere that has slipped too far between long steps reports it", "[haptic][deep_press]") {
+  const deep_press::Rest still = deep_press::rest_after({1.0, false, 0.016, 0.007});
+  const deep_press::Rest moving = deep_press::rest_after({1.0, true, 0.016, 0.007});
+  CHECK(((moving.force - still.force).norm() < 0.1 * still.force.norm() || moving.flagged == 300));
+  CHECK(still.flagged == 0);
 }

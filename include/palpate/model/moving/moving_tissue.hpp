@@ -9,6 +9,7 @@
 #include <palpate/core/triple_buffer.hpp>
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/contact_springs.hpp>
+#include <palpate/model/moving/detail/force_agreement.hpp>
 #include <palpate/model/moving/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/split_vertices.hpp>
@@ -104,10 +105,11 @@ class MovingTissue : public ModelBase {
 
   /// Takes the newest surface. Status: `inverted` while elements are inverted; `material_exceeded` while some are
   /// beyond the range of their material; solver_not_converged when the last step
-  /// ended far from its solution; degraded_model when a step could not be corrected for the tool forces, so that only
-  /// the next one includes them, or when there were more than most_forces; non_finite_force when the last `end_tick`
-  /// received forces that are not finite; slow_tissue when a BackgroundWorker does not keep up, stalled_tissue when it
-  /// has failed; large_displacement when linear surroundings are displaced too far.
+  /// ended far from its solution, or when it and ticks find different forces; degraded_model when a step could not
+  /// be corrected for the tool forces, so that only the next one includes them, or when there were more than
+  /// most_forces; non_finite_force when the last `end_tick` received forces that are not finite; slow_tissue when a
+  /// BackgroundWorker does not keep up, stalled_tissue when it has failed; large_displacement when linear surroundings
+  /// are displaced too far.
   Status begin_tick() noexcept;
   /// Forces that are not finite are ignored. Forces without points are dead loads of the steps.
   void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept;
@@ -275,6 +277,7 @@ class MovingTissue : public ModelBase {
   bool was_slit_ = false;                      // since the last step
   detail::SplitVertices split_;                // of the last change of the surface
   Forces used_;
+  ForceAgreement agreement_;
   ContactSprings springs_;      // of the newest forces; without them these are loads
   bool has_springs_ = false;    // in the last step
   bool takes_springs_ = false;  // whether the motion does

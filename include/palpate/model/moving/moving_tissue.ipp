@@ -67,6 +67,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   if (motion_->is_quasi_static()) start_secants();
   takes_springs_ = motion_->set_springs({});
   springs_ = ContactSprings(nodes_.size(), most_forces, most_points);
+  agreement_ = ForceAgreement(nodes_.size());
   if (stretches_) stretch_ = SurfaceStretch(rest_, triangles_);
   View view = make_view();
   view.near = {nodes_.size(), most_near, most_pressed};
@@ -120,6 +121,8 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   report_failed(false);
   if (!prepare_step()) return {};
   const bool is_new = take_forces();
+  agreement_.add({pressing_.front().item.data(), pressing_.front().count});
+  springs_.set_stiffness(agreement_.spring_stiffness());
   full_.setZero();
   if (!has_springs_) add(used_, -1.0, full_);
   if (is_new || pressing_.front().number != changed_.number) set_springs(pressing_.front());
@@ -139,6 +142,8 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   motion_->set_load(full_);
   const MotionStep done = motion_->step(step_);
   springs_.read(motion_->displacement(), {used_.item.data(), used_.count});
+  if (!springs_.empty())
+    agreement_.compare({pressing_.front().item.data(), used_.count}, {used_.item.data(), used_.count}, has_friction_);
   if (motion_->is_quasi_static()) {
     if (loads_changed_)
       secants_.clear();
@@ -150,6 +155,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
+  if (agreement_.is_poor()) status.set(StatusFlag::solver_not_converged);
   publish(status);
   ++steps_;
   return done;
@@ -278,6 +284,7 @@ PALPATE_INLINE void MovingTissue::restart() {
   pressing_.front() = {};  // of a session before the reset
   used_ = {};
   springs_.clear();
+  agreement_.clear();
   has_springs_ = false;
   motion_->set_springs({});
   compliance_.set_scale(1.0);
@@ -312,6 +319,7 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   for (const NodeId node : surface.nodes) rest.push_back(positions[static_cast<std::size_t>(node)]);
   if (stretches_) stretch_ = SurfaceStretch(rest, surface.surface.triangles());
   springs_.resize(surface.nodes.size());
+  agreement_.resize(surface.nodes.size());
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.swap(rest);

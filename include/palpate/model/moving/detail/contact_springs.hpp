@@ -30,6 +30,8 @@ class ContactSprings {
   /// For a surface of another number of vertices. Clears.
   void resize(std::size_t vertices);
   void clear() noexcept { springs_.clear(); }
+  /// Stiffness of all springs together, relative to that of the tissue under them, from the next `set` on.
+  void set_stiffness(double relative) noexcept { stiffness_ = relative; }
   bool empty() const noexcept { return springs_.empty(); }
   std::span<const ContactSpring> all() const noexcept { return springs_; }
 
@@ -71,10 +73,6 @@ class ContactSprings {
   void add_change(const VectorX& u, const VectorX& more, std::span<VertexForce> forces) const noexcept;
 
  private:
-  /// Stiffness of all springs together, relative to that of the tissue under them. Softer ones do not hold a state that
-  /// is unstable under dead loads; stiffer ones take more iterations of a step.
-  static constexpr double stiffer = 3.0;
-
   /// Numbers the vertices with forces and adds up their points' forces and directions. False where a point has none.
   bool enter(std::span<const VertexForce> forces, std::span<const PointForce> points) noexcept;
   void add(const PointForce& point, const Vector3& direction, double own, bool has_friction,
@@ -85,6 +83,7 @@ class ContactSprings {
     return static_cast<std::size_t>(slot_[static_cast<std::size_t>(vertex)]);
   }
 
+  double stiffness_ = 3.0;
   std::vector<ContactSpring> springs_;
   std::vector<std::array<int, 3>> forces_of_;  // per spring: the forces on its vertices
   std::vector<int> slot_;                      // per vertex: number of its force

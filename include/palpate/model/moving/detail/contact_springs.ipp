@@ -59,7 +59,7 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
   if (!(compliance > 0.0)) return;  // of prescribed vertices
   spring.direction = direction;
   spring.pulls = point.grasped;
-  spring.stiffness = stiffer / compliance;
+  spring.stiffness = stiffness_ / compliance;
   spring.reach = direction.dot(moved) + point.force.in_model_axes().norm() / spring.stiffness;
   springs_.push_back(spring);
   forces_of_.push_back(of);

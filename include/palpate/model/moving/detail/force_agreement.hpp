@@ -1,0 +1,100 @@
+// Whether the contact forces of ticks and steps agree.
+#pragma once
+
+#include <palpate/concepts/vertex_force.hpp>
+#include <palpate/core/config.hpp>
+#include <palpate/core/types.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+/// Whether ticks and steps find the same contact forces. Where they amplify each other, the forces of ticks go up and
+/// down from step to step. Springs between tools and tissue (ContactSprings) damp that, but they are three times as
+/// stiff as the tissue under all of them together, which is soft compared with the tissue under pressures that change
+/// from point to point. Where the body yields to such pressures, as in a surface that is close to wrinkling, or in
+/// short steps with inertia, the springs must be stiffer. Only the constructor and `resize` allocate.
+class ForceAgreement {
+ public:
+  ForceAgreement() = default;
+  explicit ForceAgreement(std::size_t vertices) { resize(vertices); }
+
+  /// For a surface of another number of vertices. Clears.
+  void resize(std::size_t vertices) {
+    for (std::vector<Vector3>* x : {&force_, &change_, &next_, &differed_}) x->assign(vertices, Vector3::Zero());
+    clear();
+  }
+  void clear() noexcept;
+  /// The forces of the newest tick. O(vertices).
+  void add(std::span<const VertexForce> forces) noexcept;
+  /// What the step makes of these forces, in the same order. With friction the difference stays, as far as the forces
+  /// do: where points have slipped too far or too little, they do so until they slip again.
+  void compare(std::span<const VertexForce> ticks, std::span<const VertexForce> step, bool has_friction) noexcept;
+
+  /// Stiffness that the springs need together, relative to the tissue under them.
+  double spring_stiffness() const noexcept { return stiffness_; }
+  /// Whether forces are in doubt: up and down by more than a twentieth, or in steps by more than 7 % different.
+  bool is_poor() const noexcept { return swings_ || remembered_ > 0.07 * std::sqrt(size_); }
+
+ private:
+  // Softer springs do not hold a state that is unstable under dead loads; stiffer ones take more iterations of a step.
+  static constexpr double softest = 3.0, stiffest = 10.0;
+
+  std::vector<Vector3> force_, change_, next_;  // per vertex
+  std::vector<Vector3> differed_;               // the forces of the tick that differed most
+  double size_ = 0.0, last_ = 0.0;              // sum of the squares of force_, of change_
+  double difference_ = 0.0;                     // of that tick and its step, norm [N]
+  double remembered_ = 0.0;                     // of it, now [N]
+  double stiffness_ = softest;
+  bool swings_ = false;
+};
+
+inline void ForceAgreement::clear() noexcept {
+  std::ranges::fill(force_, Vector3::Zero());
+  std::ranges::fill(change_, Vector3::Zero());
+  size_ = last_ = difference_ = remembered_ = 0.0;
+  stiffness_ = softest;
+  swings_ = false;
+}
+
+inline void ForceAgreement::add(std::span<const VertexForce> forces) noexcept {
+  constexpr double back = 0.3, growth = 0.5;  // cosine of a change that goes back, its square relative to the last one
+  constexpr double noticed = 1e-7, large = 2.5e-3;  // squares of changes, relative to the forces
+  constexpr double stiffer = 1.3, softer = 0.98;    // per step
+  constexpr double forgotten = 0.7;                 // part of a difference, when the forces have changed by their size
+  if (forces.empty()) return clear();
+  double product = 0.0, change = 0.0, away = 0.0;
+  size_ = 0.0;
+  std::ranges::fill(next_, Vector3::Zero());
+  for (const VertexForce& f : forces) next_[static_cast<std::size_t>(f.vertex)] += f.force.in_model_axes();
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    const Vector3 now = next_[i] - force_[i];
+    product += now.dot(change_[i]);
+    change += now.squaredNorm();
+    size_ += next_[i].squaredNorm();
+    away += (next_[i] - differed_[i]).squaredNorm();
+    change_[i] = now;
+  }
+  force_.swap(next_);
+  const bool goes_back = product < -back * std::sqrt(change * last_) && change > growth * last_;
+  swings_ = goes_back && change > large * size_;
+  stiffness_ = goes_back && change > noticed * size_ ? std::min(stiffest, stiffer * stiffness_)
+                                                     : std::max(softest, softer * stiffness_);
+  last_ = change;
+  remembered_ = difference_ * std::max(0.0, 1.0 - forgotten * std::sqrt(away / size_));
+}
+
+inline void ForceAgreement::compare(std::span<const VertexForce> ticks, std::span<const VertexForce> step,
+                                    bool has_friction) noexcept {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < ticks.size(); ++k)
+    sum += (ticks[k].force.in_model_axes() - step[k].force.in_model_axes()).squaredNorm();
+  if (has_friction && !(sum > remembered_ * remembered_)) return;
+  difference_ = remembered_ = std::sqrt(sum);
+  std::ranges::copy(force_, differed_.begin());
+}
+
+}}  // namespace palpate
