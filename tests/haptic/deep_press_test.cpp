@@ -160,9 +160,9 @@ TEST_CASE("deep presses on facets as long as the radius are flagged", "[haptic][
 
 TEST_CASE("deep presses on one quadratic element through the thickness are flagged", "[haptic][deep_press]") {
   using namespace deep_press;
-  const auto one = promote<Tet10>(box_tet4(Vector3(5.0, 5.0, 1.0) * radius, {5, 5, 1}, BoxSplit::six));
-  const DeepPress found =
-      press(one, NeoHookeanLogarithmic{5e3, 0.45, 1000.0}, {.inertia = false}, Vector3(2.53, 2.48, 1.0) * radius);
+  const auto one = promote<Tet10>(box_tet4(Vector3(5.0, 5.0, 1.0) * deep_press::radius, {5, 5, 1}, BoxSplit::six));
+  const DeepPress found = press(one, NeoHookeanLogarithmic{5e3, 0.45, 1000.0}, {.inertia = false},
+                                Vector3(2.53, 2.48, 1.0) * deep_press::radius);
   CHECK(found.flagged > 900);
 }
 

@@ -177,6 +177,7 @@ class MovingTissue : public ModelBase {
   void restart();
   std::mutex& changes() noexcept { return changes_; }
   /// Publishes the present state for ticks and drawing.
+  void compare_forces(const std::vector<Matrix3>& rotation) noexcept;
   void publish(Status status) noexcept;
   /// Takes the newest surface; for the thread that ticks.
   void take_surface() noexcept;

@@ -142,8 +142,6 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   motion_->set_load(full_);
   const MotionStep done = motion_->step(step_);
   springs_.read(motion_->displacement(), {used_.item.data(), used_.count});
-  if (!springs_.empty())
-    agreement_.compare({pressing_.front().item.data(), used_.count}, {used_.item.data(), used_.count}, has_friction_);
   if (motion_->is_quasi_static()) {
     if (loads_changed_)
       secants_.clear();
@@ -155,7 +153,6 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   }
   Status status = done.status;
   if (!corrected) status.set(StatusFlag::degraded_model);
-  if (agreement_.is_poor()) status.set(StatusFlag::solver_not_converged);
   publish(status);
   ++steps_;
   return done;
@@ -508,6 +505,17 @@ PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept
   return all <= most_near && all * used_.pressed.count <= most_blocks ? std::span<const int>(every_) : used_.near.all();
 }
 
+/// By their energy: where parts are stiff, forces that hardly matter go from point to point.
+PALPATE_INLINE void MovingTissue::compare_forces(const std::vector<Matrix3>& rotation) noexcept {
+  if (springs_.empty()) return;
+  std::array<VertexForce, most_forces> item = pressing_.front().item;
+  const std::span<const VertexForce> forces(item.data(), used_.count);
+  const double all = compliance_.work(rotation, forces);
+  for (std::size_t k = 0; k < used_.count; ++k)
+    item[k].force = ModelVector(item[k].force.in_model_axes() - used_.item[k].force.in_model_axes());
+  agreement_.compare(compliance_.work(rotation, forces), all, has_friction_);
+}
+
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   View& view = views_.back();
   VectorX& drawn = drawn_.back();
@@ -523,7 +531,9 @@ PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   update_view(view);
   view.surface.move_to(view.free, ++views_made_);
   view.surface.expect(view.pressed, {used_.item.data(), used_.count});
+  compare_forces(view.rotation);
   view.status = status | changed_.status;
+  if (agreement_.is_poor()) view.status.set(StatusFlag::solver_not_converged);
   views_.publish();
   drawn = motion_->displacement();
   drawn_.publish();

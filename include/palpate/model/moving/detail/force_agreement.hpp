@@ -30,14 +30,15 @@ class ForceAgreement {
   void clear() noexcept;
   /// The forces of the newest tick. O(vertices).
   void add(std::span<const VertexForce> forces) noexcept;
-  /// What the step makes of these forces, in the same order. With friction the difference stays, as far as the forces
-  /// do: where points have slipped too far or too little, they do so until they slip again.
-  void compare(std::span<const VertexForce> ticks, std::span<const VertexForce> step, bool has_friction) noexcept;
+  /// Energies of the difference between these forces and those that the step has found, and of the forces. With
+  /// friction a difference stays, as far as the forces do: where points have slipped too far or too little, they do so
+  /// until they slip again.
+  void compare(double difference, double all, bool has_friction) noexcept;
 
   /// Stiffness that the springs need together, relative to the tissue under them.
   double spring_stiffness() const noexcept { return stiffness_; }
-  /// Whether forces are in doubt: up and down by more than a twentieth, or in steps by more than 7 % different.
-  bool is_poor() const noexcept { return swings_ || remembered_ > 0.07 * std::sqrt(size_); }
+  /// Whether the forces are in doubt.
+  bool is_poor() const noexcept { return remembered_ > 0.07 * all_; }
 
  private:
   // Softer springs do not hold a state that is unstable under dead loads; stiffer ones take more iterations of a step.
@@ -45,55 +46,51 @@ class ForceAgreement {
 
   std::vector<Vector3> force_, change_, next_;  // per vertex
   std::vector<Vector3> differed_;               // the forces of the tick that differed most
-  double size_ = 0.0, last_ = 0.0;              // sum of the squares of force_, of change_
-  double difference_ = 0.0;                     // of that tick and its step, norm [N]
-  double remembered_ = 0.0;                     // of it, now [N]
+  double last_ = 0.0;                           // sum of the squares of change_
+  // Roots of energies:
+  double all_ = 0.0;         // of the forces
+  double difference_ = 0.0;  // of the difference between that tick and its step
+  double remembered_ = 0.0;  // what is left of it
   double stiffness_ = softest;
-  bool swings_ = false;
 };
 
 inline void ForceAgreement::clear() noexcept {
   std::ranges::fill(force_, Vector3::Zero());
   std::ranges::fill(change_, Vector3::Zero());
-  size_ = last_ = difference_ = remembered_ = 0.0;
+  last_ = all_ = difference_ = remembered_ = 0.0;
   stiffness_ = softest;
-  swings_ = false;
 }
 
 inline void ForceAgreement::add(std::span<const VertexForce> forces) noexcept {
   constexpr double back = 0.3, growth = 0.5;  // cosine of a change that goes back, its square relative to the last one
-  constexpr double noticed = 1e-7, large = 2.5e-3;  // squares of changes, relative to the forces
-  constexpr double stiffer = 1.3, softer = 0.98;    // per step
-  constexpr double forgotten = 0.7;                 // part of a difference, when the forces have changed by their size
+  constexpr double noticed = 1e-7;            // square of a change, relative to the forces
+  constexpr double stiffer = 1.3, softer = 0.98;  // per step
+  constexpr double forgotten = 0.7;               // part of a difference, when the forces have changed by their size
   if (forces.empty()) return clear();
-  double product = 0.0, change = 0.0, away = 0.0;
-  size_ = 0.0;
+  double product = 0.0, change = 0.0, size = 0.0, away = 0.0;
   std::ranges::fill(next_, Vector3::Zero());
   for (const VertexForce& f : forces) next_[static_cast<std::size_t>(f.vertex)] += f.force.in_model_axes();
   for (std::size_t i = 0; i < next_.size(); ++i) {
     const Vector3 now = next_[i] - force_[i];
     product += now.dot(change_[i]);
     change += now.squaredNorm();
-    size_ += next_[i].squaredNorm();
+    size += next_[i].squaredNorm();
     away += (next_[i] - differed_[i]).squaredNorm();
     change_[i] = now;
   }
   force_.swap(next_);
   const bool goes_back = product < -back * std::sqrt(change * last_) && change > growth * last_;
-  swings_ = goes_back && change > large * size_;
-  stiffness_ = goes_back && change > noticed * size_ ? std::min(stiffest, stiffer * stiffness_)
-                                                     : std::max(softest, softer * stiffness_);
+  stiffness_ = goes_back && change > noticed * size ? std::min(stiffest, stiffer * stiffness_)
+                                                    : std::max(softest, softer * stiffness_);
   last_ = change;
-  remembered_ = difference_ * std::max(0.0, 1.0 - forgotten * std::sqrt(away / size_));
+  remembered_ = difference_ * std::max(0.0, 1.0 - forgotten * std::sqrt(away / size));
 }
 
-inline void ForceAgreement::compare(std::span<const VertexForce> ticks, std::span<const VertexForce> step,
-                                    bool has_friction) noexcept {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < ticks.size(); ++k)
-    sum += (ticks[k].force.in_model_axes() - step[k].force.in_model_axes()).squaredNorm();
-  if (has_friction && !(sum > remembered_ * remembered_)) return;
-  difference_ = remembered_ = std::sqrt(sum);
+inline void ForceAgreement::compare(double difference, double all, bool has_friction) noexcept {
+  all_ = std::sqrt(std::max(0.0, all));
+  const double found = std::sqrt(std::max(0.0, difference));
+  if (has_friction && !(found > remembered_)) return;
+  difference_ = remembered_ = found;
   std::ranges::copy(force_, differed_.begin());
 }
 
