@@ -291,7 +291,7 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
 /// half-space may not even be positive definite. Nodes up to about a length aside count too: in an unstructured mesh
 /// none may be straight below.
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
-  constexpr double beside = 1.2, surface = 0.05;  // edges
+  constexpr double beside = 1.2, surface = 0.05;  // lengths between nodes
   const double length = source_.boundary.length(middle);
   double nearest = infinity;
   for (const NodeId n : patch_.nodes()) {

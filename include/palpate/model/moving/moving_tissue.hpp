@@ -177,7 +177,6 @@ class MovingTissue : public ModelBase {
   void restart();
   std::mutex& changes() noexcept { return changes_; }
   /// Publishes the present state for ticks and drawing.
-  void compare_forces(const std::vector<Matrix3>& rotation) noexcept;
   void publish(Status status) noexcept;
   /// Takes the newest surface; for the thread that ticks.
   void take_surface() noexcept;
@@ -234,6 +233,7 @@ class MovingTissue : public ModelBase {
   /// The same from the response of the last step to its forces, less what the springs bear of them. O(forces^2).
   double response_ratio(const std::vector<Matrix3>& rotation) noexcept;
   /// Sets springs for forces of a tick, or none.
+  void compare_forces(const std::vector<Matrix3>& rotation) noexcept;
   void set_springs(const Forces& forces) noexcept;
   /// Compliance of two vertices, rotated and corrected by the last steps [m/N].
   Matrix3 evaluate(const View& view, int i, int j) const noexcept;

@@ -121,7 +121,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   report_failed(false);
   if (!prepare_step()) return {};
   const bool is_new = take_forces();
-  agreement_.add({pressing_.front().item.data(), pressing_.front().count});
+  if (is_new) agreement_.add({pressing_.front().item.data(), pressing_.front().count});
   springs_.set_stiffness(agreement_.spring_stiffness());
   full_.setZero();
   if (!has_springs_) add(used_, -1.0, full_);
@@ -297,6 +297,7 @@ PALPATE_INLINE void MovingTissue::restart() {
 PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
                                                  const std::vector<Vector3>& positions) {
   // Swapped, not assigned: a vector whose assignment finds no memory would be broken.
+  ForceAgreement agreement(surface.nodes.size());
   VectorX applied = applied_load(loaded_), load = applied;
   const Vector3 own = local(gravity(), pose());
   for (Index i = 0; i < mass.size(); ++i) add_node_vector(load, i, mass[i] * own);
@@ -316,7 +317,7 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
   for (const NodeId node : surface.nodes) rest.push_back(positions[static_cast<std::size_t>(node)]);
   if (stretches_) stretch_ = SurfaceStretch(rest, surface.surface.triangles());
   springs_.resize(surface.nodes.size());
-  agreement_.resize(surface.nodes.size());
+  agreement_ = std::move(agreement);
   compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.swap(rest);
@@ -459,7 +460,7 @@ PALPATE_INLINE double MovingTissue::found_compliance(const std::vector<Matrix3>&
 
 /// Accurate enough only where the tissue bears neither a small nor a large part of the forces.
 PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& rotation) noexcept {
-  constexpr double least_part = 0.15, most_part = 0.6;  // of the work
+  constexpr double softest = 0.5, stiffest = 4.5;  // tissue, relative to what the springs were made for
   full_.setZero();
   add(used_, 1.0, full_);
   if (!motion_->respond_here(full_, response_)) return 1.0;
@@ -469,7 +470,8 @@ PALPATE_INLINE double MovingTissue::response_ratio(const std::vector<Matrix3>& r
   double work = 0.0;
   for (const VertexForce& f : borne) work += f.force.in_model_axes().dot(node_vector(response_, nodes_[vertex(f)]));
   const double predicted = compliance_.work(rotation, borne), part = work / full_.dot(response_);
-  return part >= least_part && part <= most_part && predicted > 0.0 ? work / predicted : 1.0;
+  const double stiffness = springs_.stiffness() * part / (1.0 - part);
+  return part < 1.0 && stiffness >= softest && stiffness <= stiffest && predicted > 0.0 ? work / predicted : 1.0;
 }
 
 PALPATE_INLINE void MovingTissue::update_view(View& view) noexcept {
@@ -507,13 +509,22 @@ PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept
 
 /// By their energy: where parts are stiff, forces that hardly matter go from point to point.
 PALPATE_INLINE void MovingTissue::compare_forces(const std::vector<Matrix3>& rotation) noexcept {
-  if (springs_.empty()) return;
-  std::array<VertexForce, most_forces> item = pressing_.front().item;
-  const std::span<const VertexForce> forces(item.data(), used_.count);
-  const double all = compliance_.work(rotation, forces);
+  if (springs_.empty()) return agreement_.compare(0.0, 0.0, false);
+  const Forces& given = pressing_.front();  // in the order of used_
+  std::array<Vector3, most_forces> force, difference;
+  for (std::size_t k = 0; k < used_.count; ++k) {
+    const Matrix3 back = rotation[vertex(used_.item[k])].transpose();
+    force[k] = back * given.item[k].force.in_model_axes();
+    difference[k] = force[k] - back * used_.item[k].force.in_model_axes();
+  }
+  double of_difference = 0.0, of_force = 0.0;
   for (std::size_t k = 0; k < used_.count; ++k)
-    item[k].force = ModelVector(item[k].force.in_model_axes() - used_.item[k].force.in_model_axes());
-  agreement_.compare(compliance_.work(rotation, forces), all, has_friction_);
+    for (std::size_t l = 0; l < used_.count; ++l) {
+      const Matrix3 c = compliance_.at_rest(vertex(used_.item[k]), vertex(used_.item[l]));
+      of_difference += difference[k].dot(c * difference[l]);
+      of_force += force[k].dot(c * force[l]);
+    }
+  agreement_.compare(of_difference, of_force, has_friction_);
 }
 
 PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {

@@ -32,6 +32,7 @@ class ContactSprings {
   void clear() noexcept { springs_.clear(); }
   /// Stiffness of all springs together, relative to that of the tissue under them, from the next `set` on.
   void set_stiffness(double relative) noexcept { stiffness_ = relative; }
+  double stiffness() const noexcept { return stiffness_; }
   bool empty() const noexcept { return springs_.empty(); }
   std::span<const ContactSpring> all() const noexcept { return springs_; }
 

@@ -13,26 +13,22 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// Whether ticks and steps find the same contact forces. Where they amplify each other, the forces of ticks go up and
-/// down from step to step. Springs between tools and tissue (ContactSprings) damp that, but they are three times as
-/// stiff as the tissue under all of them together, which is soft compared with the tissue under pressures that change
-/// from point to point. Where the body yields to such pressures, as in a surface that is close to wrinkling, or in
-/// short steps with inertia, the springs must be stiffer. Only the constructor and `resize` allocate.
+/// down from step to step. Springs between tools and tissue (ContactSprings) damp that, but they are usually three
+/// times as stiff as the tissue under all of them together, which is soft compared with the tissue under pressures that
+/// change from point to point. Where the body yields to such pressures, as in a surface that is close to wrinkling, or
+/// in short steps with inertia, the springs must be stiffer. Only the constructor allocates.
 class ForceAgreement {
  public:
   ForceAgreement() = default;
-  explicit ForceAgreement(std::size_t vertices) { resize(vertices); }
-
-  /// For a surface of another number of vertices. Clears.
-  void resize(std::size_t vertices) {
-    for (std::vector<Vector3>* x : {&force_, &change_, &next_, &differed_}) x->assign(vertices, Vector3::Zero());
-    clear();
+  explicit ForceAgreement(std::size_t vertices) : force_(vertices, Vector3::Zero()) {
+    change_ = next_ = differed_ = force_;
   }
+
   void clear() noexcept;
-  /// The forces of the newest tick. O(vertices).
+  /// The forces of a new tick, of all tools. O(vertices).
   void add(std::span<const VertexForce> forces) noexcept;
   /// Energies of the difference between these forces and those that the step has found, and of the forces. With
-  /// friction a difference stays, as far as the forces do: where points have slipped too far or too little, they do so
-  /// until they slip again.
+  /// friction a difference stays until the forces have changed: points may have slipped too far, or too little.
   void compare(double difference, double all, bool has_friction) noexcept;
 
   /// Stiffness that the springs need together, relative to the tissue under them.
@@ -63,10 +59,10 @@ inline void ForceAgreement::clear() noexcept {
 
 inline void ForceAgreement::add(std::span<const VertexForce> forces) noexcept {
   constexpr double back = 0.3, growth = 0.5;  // cosine of a change that goes back, its square relative to the last one
-  constexpr double noticed = 1e-7;            // square of a change, relative to the forces
+  constexpr double noticed = 1e-5;            // square of a change, relative to the forces
   constexpr double stiffer = 1.3, softer = 0.98;  // per step
   constexpr double forgotten = 0.7;               // part of a difference, when the forces have changed by their size
-  if (forces.empty()) return clear();
+  if (forces.empty()) all_ = difference_ = remembered_ = 0.0;
   double product = 0.0, change = 0.0, size = 0.0, away = 0.0;
   std::ranges::fill(next_, Vector3::Zero());
   for (const VertexForce& f : forces) next_[static_cast<std::size_t>(f.vertex)] += f.force.in_model_axes();
@@ -83,7 +79,8 @@ inline void ForceAgreement::add(std::span<const VertexForce> forces) noexcept {
   stiffness_ = goes_back && change > noticed * size ? std::min(stiffest, stiffer * stiffness_)
                                                     : std::max(softest, softer * stiffness_);
   last_ = change;
-  remembered_ = difference_ * std::max(0.0, 1.0 - forgotten * std::sqrt(away / size));
+  if (remembered_ > 0.0)
+    remembered_ = std::min(remembered_, difference_ * std::max(0.0, 1.0 - forgotten * std::sqrt(away / size)));
 }
 
 inline void ForceAgreement::compare(double difference, double all, bool has_friction) noexcept {

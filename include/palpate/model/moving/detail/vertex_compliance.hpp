@@ -108,15 +108,9 @@ class VertexCompliance {
   /// O(forces^2).
   double work(const std::vector<Matrix3>& rotation, std::span<const VertexForce> forces) const noexcept {
     double sum = 0.0;
-    const auto own = [&](const VertexForce& f) {
-      return Vector3(rotation[static_cast<std::size_t>(f.vertex)].transpose() * f.force.in_model_axes());
-    };
-    for (const VertexForce& f : forces) {
-      Vector3 moved = Vector3::Zero();
+    for (const VertexForce& f : forces)
       for (const VertexForce& g : forces)
-        moved += at_rest(static_cast<std::size_t>(f.vertex), static_cast<std::size_t>(g.vertex)) * own(g);
-      sum += own(f).dot(moved);
-    }
+        sum += f.force.in_model_axes().dot(rotated(rotation, f.vertex, g.vertex) * g.force.in_model_axes());
     return sum;
   }
   /// See TissueModel.
