@@ -182,7 +182,7 @@ std::vector<Finding> check_settled(const Scene& s, const Run& r) {
   return {};
 }
 
-/// No vertex of the surface is inside a sphere.
+/// No vertex of the surface is inside a sphere, if facets are no longer than its radius.
 std::vector<Finding> check_penetration(const Scene& s, const Run& r) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const ToolValue& t : s.tools) smallest = std::min(smallest, t.radius);

@@ -239,13 +239,17 @@ class Player {
     run_.work_in = std::max(run_.work_in, run_.work);
   }
 
+  /// Of vertices with facets that are no longer than the radius: the dents of others are between the vertices.
   double penetration(const ServoSnapshot& snapshot) {
     double deepest = 0.0;
     const std::vector<Vector3> surface = tissue_->surface({snapshot.forces.data(), snapshot.force_count});
-    for (std::size_t t = 0; t < scene_.tools.size(); ++t)
-      if (scene_.tools[t].kind == "sphere")
-        for (const Vector3& x : surface)
-          deepest = std::max(deepest, manner_.change.scale * scene_.tools[t].radius - (x - servo_->proxy(t)).norm());
+    const std::vector<double> facets = tissue_->facet_lengths();
+    for (std::size_t t = 0; t < scene_.tools.size(); ++t) {
+      if (scene_.tools[t].kind != "sphere") continue;
+      const double radius = manner_.change.scale * scene_.tools[t].radius;
+      for (std::size_t v = 0; v < surface.size(); ++v)
+        if (facets[v] <= radius) deepest = std::max(deepest, radius - (surface[v] - servo_->proxy(t)).norm());
+    }
     return deepest;
   }
 

@@ -41,6 +41,8 @@ class Tissue {
   virtual bool cut(const palpate::BladeSweep& sweep) = 0;
   /// Vertices of the contact surface under forces on it, world frame [m]. Requires their columns, as a tick does.
   virtual std::vector<Vector3> surface(std::span<const palpate::VertexForce> forces) = 0;
+  /// The longest edge of the facets at each of them [m].
+  virtual std::vector<double> facet_lengths() = 0;
 };
 
 /// An element, a law and a solver by the words of a scene, and how to make its tissue.

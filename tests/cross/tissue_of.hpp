@@ -10,6 +10,7 @@
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -85,8 +86,22 @@ class TissueOf final : public Tissue {
   std::vector<palpate::Vector3> surface(std::span<const palpate::VertexForce> forces) override {
     return group_ ? pressed_surface(*group_, forces) : pressed_surface(*model_, forces);
   }
+  std::vector<double> facet_lengths() override {
+    return group_ ? longest_edges(group_->contact_surface()) : longest_edges(model_->contact_surface());
+  }
 
  private:
+  static std::vector<double> longest_edges(const palpate::ContactSurface& surface) {
+    std::vector<double> longest(static_cast<std::size_t>(surface.vertex_count()), 0.0);
+    for (const palpate::Triangle& triangle : surface.triangles())
+      for (std::size_t a = 0; a < 3; ++a) {
+        const int i = triangle[a], j = triangle[(a + 1) % 3];
+        const double length = (surface.position(i) - surface.position(j)).norm();
+        for (const int v : {i, j})
+          longest[static_cast<std::size_t>(v)] = std::max(longest[static_cast<std::size_t>(v)], length);
+      }
+    return longest;
+  }
   template <class T>
   static std::vector<palpate::Vector3> pressed_surface(T& tissue, std::span<const palpate::VertexForce> forces) {
     std::vector<int> loaded;
