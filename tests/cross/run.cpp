@@ -152,8 +152,8 @@ class Player {
           if (conditions_at_) tissue_->set_conditions(conditions_at_(part_at(tick)));
           tissue_->work();
         }
-      if (tick == 0) start = rest();
       one_tick(tick);
+      if (tick == 0) start = rest();  // the tick has taken the surface of the first step, which has the pose
       wake += std::chrono::microseconds(1000000 / scene_.rate);
       if (worker_) std::this_thread::sleep_until(wake);
     }
