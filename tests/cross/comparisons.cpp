@@ -53,12 +53,8 @@ double rounding_tolerance(const Scene& scene) {
 }
 
 std::vector<Finding> compare_with(const char* name, const Scene& scene, const Run& run, const Manner& manner,
-                                  double tolerance, Status excuse = excuses()) {
-  return compare(name, scene, run, cross::run(scene, manner), tolerance, excuse);
-}
-/// The excuses of runs with other contact points: on coarse facets the force depends on them.
-Status other_points() {
-  return excuses() | StatusFlag::coarse_contact;
+                                  double tolerance) {
+  return compare(name, scene, run, cross::run(scene, manner), tolerance);
 }
 
 /// Gravity keeps its direction in the world when the pose rotates the body.
@@ -98,9 +94,9 @@ std::vector<Finding> check_scaled(const Scene& s, const Run& r) {
   return compare_with("scaled", s, r, {.change = {.scale = 1.7}}, rounding_tolerance(s));
 }
 std::vector<Finding> check_renumbered(const Scene& s, const Run& r) {
-  const double tolerance =
-      moves(s.solver) && s.friction > 0.0 ? 0.1 : 0.06;  // points depend on the numbers of vertices
-  return compare_with("renumbered", s, r, {.change = {.renumbered = true}}, tolerance, other_points());
+  constexpr double other_points = 0.06;  // the choice of contact points depends on the numbers of the vertices
+  return compare_with("renumbered", s, r, {.change = {.renumbered = true}},
+                      std::max(rounding_tolerance(s), other_points));
 }
 std::vector<Finding> check_split(const Scene& s, const Run& r) {
   return compare_with("two equal regions", s, r, {.change = {.split = true}}, rounding_tolerance(s));
@@ -153,8 +149,7 @@ std::vector<Finding> check_uncut(const Scene& s, const Run& r) {
   return compare_with("not cuttable", s, r, {.solver = s.solver.substr(4)}, rounding_tolerance(s));
 }
 std::vector<Finding> check_all_rows(const Scene& s, const Run& r) {
-  const double tolerance = moves(s.solver) && s.friction > 0.0 ? 0.1 : 0.05;
-  return compare_with("all contacts", s, r, {.capacity = 1000}, tolerance, other_points());
+  return compare_with("all contacts", s, r, {.capacity = 1000}, 0.05);
 }
 /// Newton's method in every step, for tissue without inertia that has come to rest.
 bool has_newton(const Scene& s) {
@@ -311,8 +306,7 @@ bool is_free(const std::vector<ToolTick>& tick) {
 
 }  // namespace
 
-std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance,
-                             Status excuse) {
+std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance) {
   if (run.refused != other.refused)
     return {{name, 0, 0, run.refused.empty() ? 0.0 : 1.0, other.refused.empty() ? 0.0 : 1.0, false,
              run.refused + "/" + other.refused}};
@@ -330,13 +324,13 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
       const double arm = 3.0 * scene.tools[t].radius;  // of the ends of a capsule
       const double apart = tolerance > 0.0 ? difference(run, other, k, t, arm) : 0.0;
       const int tick = static_cast<int>(k), tool = static_cast<int>(t);
-      const bool is_flagged = ((a.status.bits() | b.status.bits()) & excuse.bits()) != 0;
+      const bool is_flagged = ((a.status.bits() | b.status.bits()) & excuses().bits()) != 0;
       has_diverged = has_diverged || (remembers && is_flagged && apart > 1e-3 * scale);
       const bool same = tolerance > 0.0 ? apart <= tolerance * scale : is_equal(a, b);
       if (same) continue;
-      Finding f = at(name, run, tick, tool, a.force.norm(), b.force.norm(), excuse);
+      Finding f = at(name, run, tick, tool, a.force.norm(), b.force.norm(), excuses());
       f.flagged =
-          tolerance > 0.0 && (has_diverged || f.flagged || at(name, other, tick, tool, 0.0, 0.0, excuse).flagged);
+          tolerance > 0.0 && (has_diverged || f.flagged || at(name, other, tick, tool, 0.0, 0.0, excuses()).flagged);
       has_diverged = f.flagged;
       if (a.force == b.force) f.flags += " torques, flags or bounds differ";
       findings.push_back(f);

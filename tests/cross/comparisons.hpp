@@ -18,8 +18,7 @@ Finding at(const char* oracle, const Run& run, int tick, int tool, double found,
 
 /// Findings where forces differ by more than `tolerance` of the largest force; with 0 where bits, flags or bounds
 /// differ, and then no flag excuses it. Ends at the first silent one.
-std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance,
-                             palpate::Status excuse = excuses());
+std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance);
 /// The same only at the end of the second phase; `change` is that of the other run.
 std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
                                      double tolerance, const Change& change = {});
