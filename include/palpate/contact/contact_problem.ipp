@@ -421,7 +421,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
   double longest = tool.radius / coarse;
   const bool is_deep = surface.has_large_strain() && depth > deep * tool.radius;
-  const double shown = is_deep ? deep * tool.radius : depth;  // the stretch of a deeper dent needs the same facets
+  const double shown = is_deep ? deep * tool.radius : depth;  // a deeper dent does not allow longer facets
   if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * shown));
   const double longest_stretched = is_deep ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;

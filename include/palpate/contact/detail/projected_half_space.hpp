@@ -19,7 +19,7 @@ enum class HalfSpaceMark : std::uint8_t {
   several_materials = 16,  ///< less than two elements, or an edge, from another material
   anisotropic = 32,        ///< the material differs from the isotropic one that was taken
   near_support = 64,       ///< constrained, or above constrained nodes less than 1.3 edges of an element away
-  thin = 128,              ///< less than 0.7 nodes' distances away: facets do not show what these do; left as it is
+  thin = 128,              ///< less than 0.7 distances between nodes away, too near for the facets: left as it is
 };
 
 /// A set of HalfSpaceMark.

@@ -22,6 +22,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 class ContactSprings {
  public:
   static constexpr std::size_t most_per_point = 3;
+  /// Stiffness of all springs together, relative to that of the tissue under them. Softer springs do not hold a state
+  /// that is unstable under dead loads; stiffer ones take more iterations of a step.
+  static constexpr double usual_stiffness = 3.0;
 
   ContactSprings() = default;
   /// For a surface of `vertices`, and at most that many forces on vertices and points.
@@ -30,7 +33,7 @@ class ContactSprings {
   /// For a surface of another number of vertices. Clears.
   void resize(std::size_t vertices);
   void clear() noexcept { springs_.clear(); }
-  /// Stiffness of all springs together, relative to that of the tissue under them, from the next `set` on.
+  /// Another stiffness than the usual one, from the next `set` on.
   void set_stiffness(double relative) noexcept { stiffness_ = relative; }
   double stiffness() const noexcept { return stiffness_; }
   bool empty() const noexcept { return springs_.empty(); }
@@ -84,7 +87,7 @@ class ContactSprings {
     return static_cast<std::size_t>(slot_[static_cast<std::size_t>(vertex)]);
   }
 
-  double stiffness_ = 3.0;
+  double stiffness_ = usual_stiffness;
   std::vector<ContactSpring> springs_;
   std::vector<std::array<int, 3>> forces_of_;  // per spring: the forces on its vertices
   std::vector<int> slot_;                      // per vertex: number of its force

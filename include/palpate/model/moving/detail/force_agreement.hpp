@@ -4,6 +4,7 @@
 #include <palpate/concepts/vertex_force.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/model/moving/detail/contact_springs.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +13,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Whether ticks and steps find the same contact forces. Where they amplify each other, the forces of ticks go up and
-/// down from step to step. Springs between tools and tissue (ContactSprings) damp that, but they are usually three
-/// times as stiff as the tissue under all of them together, which is soft compared with the tissue under pressures that
-/// change from point to point. Where the body yields to such pressures, as in a surface that is close to wrinkling, or
-/// in short steps with inertia, the springs must be stiffer. Only the constructor allocates.
+/// Whether ticks and steps find the same contact forces, all tools together. A tick that takes the tissue for stiffer
+/// than it is finds too large a change of force, and the next step reverses it: forces alternate. The springs between
+/// tools and tissue (ContactSprings) damp this. Their usual stiffness is that of a uniform pressure. Where the tissue
+/// is soft under pressures that differ from point to point (a stretched surface close to wrinkling, short steps with
+/// inertia), they must be stiffer. Only the constructor allocates.
 class ForceAgreement {
  public:
   ForceAgreement() = default;
@@ -33,12 +34,11 @@ class ForceAgreement {
 
   /// Stiffness that the springs need together, relative to the tissue under them.
   double spring_stiffness() const noexcept { return stiffness_; }
-  /// Whether the forces are in doubt.
+  /// Whether the difference is more than 7 % of the forces, by the roots of the energies.
   bool is_poor() const noexcept { return remembered_ > 0.07 * all_; }
 
  private:
-  // Softer springs do not hold a state that is unstable under dead loads; stiffer ones take more iterations of a step.
-  static constexpr double softest = 3.0, stiffest = 10.0;
+  static constexpr double softest = ContactSprings::usual_stiffness, stiffest = 10.0;
 
   std::vector<Vector3> force_, change_, next_;  // per vertex
   std::vector<Vector3> differed_;               // the forces of the tick that differed most
