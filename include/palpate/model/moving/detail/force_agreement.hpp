@@ -17,7 +17,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// than it is finds too large a change of force, and the next step reverses it: forces alternate. The springs between
 /// tools and tissue (ContactSprings) damp this. Their usual stiffness is that of a uniform pressure. Where the tissue
 /// is soft under pressures that differ from point to point (a stretched surface close to wrinkling, short steps with
-/// inertia), they must be stiffer. Only the constructor allocates.
+/// inertia), they must be stiffer. Much stiffer ones throw the surface off the tool in short steps with inertia. Only
+/// the constructor allocates.
 class ForceAgreement {
  public:
   ForceAgreement() = default;
@@ -38,7 +39,7 @@ class ForceAgreement {
   bool is_poor() const noexcept { return remembered_ > 0.07 * all_; }
 
  private:
-  static constexpr double softest = ContactSprings::usual_stiffness, stiffest = 10.0;
+  static constexpr double softest = ContactSprings::usual_stiffness, stiffest = 5.0;
 
   std::vector<Vector3> force_, change_, next_;  // per vertex
   std::vector<Vector3> differed_;               // the forces of the tick that differed most
