@@ -85,22 +85,26 @@ inline VectorX of_given_nodes(const VectorX& u, const std::vector<NodeId>& map, 
   return given;
 }
 
-/// Largest distance of the pressed points from the sphere when their forces act on the whole body (u, 3 per admitted
-/// node), relative to the small depth. Does not use the stored compliance. Contacts with less than 1 % of the largest
-/// force are ignored: they may still be settling.
-template <class Model, class Servo>
-double distance_from_spheres(const Model& model, const Servo& servo, const VectorX& u, const PressScene& scene) {
+/// Largest error of the contact, relative to the small depth: distance of pressing points from their sphere, and
+/// displacement of their vertices by the compliance of the ticks, compared with that of the whole body (u, 3 per
+/// admitted node) under the same forces. Contacts with less than 1 % of the largest force may still be settling.
+template <class Model, class Tissue, class Servo>
+double contact_error(const Model& model, const Tissue& tissue, Servo& servo, const VectorX& u,
+                     const PressScene& scene) {
+  const ServoSnapshot& snapshot = servo.read_snapshot();
   double worst = 0.0, largest = 0.0;
-  for (const ToolContact& c : servo.contacts()) largest = std::max(largest, c.force);
-  for (const ToolContact& c : servo.contacts()) {
+  for (const ToolContact& c : snapshot.tool_contacts()) largest = std::max(largest, c.force);
+  for (const ToolContact& c : snapshot.tool_contacts()) {
     if (!(c.force > 0.01 * largest)) continue;
-    Vector3 point = Vector3::Zero();
-    for (std::size_t a = 0; a < 3; ++a) {
-      const NodeId node = model.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
-      point += c.weights[a] * (model.rest_position(node) + u.segment<3>(3 * Index{node}));
-    }
-    const double distance = (servo.proxy(static_cast<std::size_t>(c.tool)) - point).norm();
+    const double distance = (snapshot.proxies[static_cast<std::size_t>(c.tool)] - c.point).norm();
     worst = std::max(worst, std::abs(distance - scene.radius));
+    for (const int vertex : c.vertices) {
+      Vector3 moved = Vector3::Zero();
+      for (const VertexForce& f : snapshot.vertex_forces())
+        moved += tissue.compliance(vertex, f.vertex) * f.force.in_model_axes();
+      const NodeId node = model.touchable_nodes()[static_cast<std::size_t>(vertex)];
+      worst = std::max(worst, (moved - u.segment<3>(3 * Index{node})).norm());
+    }
   }
   return largest > 0.0 ? worst / scene.small : infinity;
 }
@@ -127,7 +131,7 @@ class LinearContender : public Contender {
     model_.displacement_with(rendered_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());
   }
-  double own_error() override { return distance_from_spheres(model_, rendered_.servo(), u_, bench_.scene); }
+  double own_error() override { return contact_error(model_, tissue_, rendered_.servo(), u_, bench_.scene); }
   Index nodes() const override { return model_.mesh().node_count(); }
   Index kept_dofs() const override { return model_.report().kept_dofs; }
   std::string remark() override { return rendered_.remark(); }

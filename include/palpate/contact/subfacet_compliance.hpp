@@ -58,8 +58,13 @@ class SubfacetCompliance {
   std::span<const Block> blocks(int v) const noexcept {
     return {blocks_.data() + first_[at(v)], static_cast<std::size_t>(first_[at(v) + 1] - first_[at(v)])};
   }
+  /// Their vertices alone, for searches that need few of the matrices.
+  std::span<const int> vertices_of_blocks(int v) const noexcept {
+    return {block_vertex_.data() + first_[at(v)], static_cast<std::size_t>(first_[at(v) + 1] - first_[at(v)])};
+  }
   std::size_t bytes() const noexcept {
-    return vertices_.size() * sizeof(HalfSpacePoint) + first_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
+    return vertices_.size() * sizeof(HalfSpacePoint) + first_.size() * sizeof(int) +
+           blocks_.size() * (sizeof(Block) + sizeof(int));
   }
 
   /// A point of the surface with this normal; not known unless all of its vertices are known or fixed. Beside fixed
@@ -77,7 +82,7 @@ class SubfacetCompliance {
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  /// Sorts the blocks of every vertex by the number of the other vertex, for `find`.
+  /// Sorts the blocks of every vertex by the number of the other vertex, and lists these, for `find`.
   void sort_blocks();
   /// The block for the displacement of vertex i per force on vertex j; null where none is stored. A binary search.
   const Block* find(int i, int j) const noexcept;
@@ -85,6 +90,7 @@ class SubfacetCompliance {
   std::vector<HalfSpacePoint> vertices_;
   std::vector<int> first_;
   std::vector<Block> blocks_;
+  std::vector<int> block_vertex_;  // of each block
   bool has_copies_ = false;
 };
 

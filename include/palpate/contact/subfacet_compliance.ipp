@@ -43,6 +43,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
     has_copies_ = has_copies_ || (body.own != nullptr && body.own->has_copies_);
     number = last + 1;
   }
+  sort_blocks();
 }
 
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices) {
@@ -71,20 +72,15 @@ PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
         blocks_[place] = blocks_[place - 1];
       blocks_[place] = block;
     }
+  block_vertex_.reserve(blocks_.size());
+  for (const Block& block : blocks_) block_vertex_.push_back(block.vertex);
 }
 
 PALPATE_INLINE const SubfacetCompliance::Block* SubfacetCompliance::find(int i, int j) const noexcept {
-  std::size_t begin = at(first_[at(j)]), end = at(first_[at(j) + 1]);
-  while (begin < end) {
-    const std::size_t middle = begin + (end - begin) / 2;
-    const Block& block = blocks_[middle];
-    if (block.vertex == i) return &block;
-    if (block.vertex < i)
-      begin = middle + 1;
-    else
-      end = middle;
-  }
-  return nullptr;
+  const std::span<const int> vertices = vertices_of_blocks(j);
+  const auto found = std::ranges::lower_bound(vertices, i);
+  return found != vertices.end() && *found == i ? &blocks(j)[static_cast<std::size_t>(found - vertices.begin())]
+                                                : nullptr;
 }
 
 PALPATE_INLINE bool SubfacetCompliance::knows(const ContactSample& sample) const noexcept {

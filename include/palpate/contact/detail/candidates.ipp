@@ -268,7 +268,8 @@ PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplac
 
 PALPATE_INLINE double Candidates::reach_from_expected(const TissueView& tissue,
                                                       SurfaceDisplacement& displacement) const noexcept {
-  return std::max({displacement.reach_from_expected(tissue), far_.expected, far_last_round_.expected});
+  return std::max(
+      {displacement.reach_from_expected(tissue, subfacet_.get(), samples_), far_.expected, far_last_round_.expected});
 }
 
 /// In a steep dent the sphere is on the outer side of the deformed facet only. For a point that it reaches from behind,

@@ -9,14 +9,15 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// and what SubfacetCompliance adds to it. That of a point per force on itself has no self compliance of the
 /// half-space: it depends on the area that the point stands for, which changes.
 /// Contact points are fixed in the material: while they press, only directions change, and these blocks do not. A point
-/// keeps its slot until another point needs it.
+/// keeps its slot until another point needs it. Where tissue moves, its compliance changes with every step; what is
+/// added to it is that of the body at rest, rotated with the surface, and need not be computed again.
 class PointCompliance {
  public:
   /// Allocates; for set-up.
   explicit PointCompliance(int capacity);
 
-  /// Clears the cache when the tissue's compliance has changed since the last tick.
-  void begin_tick(std::uint64_t revision) noexcept;
+  /// After this, nothing of the tissue's compliance is known if it has changed since the last tick.
+  void begin_tick(std::uint64_t revision) noexcept { revision_ = revision; }
   /// Clears the cache: points are renumbered.
   void forget() noexcept;
   /// Back to the state after construction. The order of the slots affects the rounding of sums.
@@ -45,26 +46,32 @@ class PointCompliance {
   PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const Candidates& points, int p,
                                                   int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
-    const std::uint64_t version = version_[at(p)] << 32 | version_[at(q)];
+    const std::uint64_t version = both(version_[at(p)], version_[at(q)]);
     if (known_[i] != version) {
       known_[i] = version;
-      compute(tissue, points, p, q, block_[i]);
+      compute(tissue, points, p, q, i);
     }
     return block_[i];
   }
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  int take(const TissueView& tissue, const Candidates& points, int sample) noexcept;
+  int take(const Candidates& points, int sample) noexcept;
+  void renew(const TissueView& tissue, const Candidates& points, int slot) noexcept;
   /// Out of line, so that the look-up is inlined.
-  void compute(const TissueView& tissue, const Candidates& points, int p, int q, Matrix3& block) const noexcept;
+  void compute(const TissueView& tissue, const Candidates& points, int p, int q, std::size_t pair) noexcept;
+  const Matrix3& added(const Candidates& points, int p, int q, std::size_t pair) noexcept;
+  static std::uint64_t both(std::uint64_t p, std::uint64_t q) noexcept { return p << 32 | q; }
 
-  std::vector<Matrix3> block_;        // of pairs of slots, lower triangle by rows
-  std::vector<std::uint64_t> known_;  // versions of the two points that the block belongs to
+  std::vector<Matrix3> block_, added_;              // of pairs of slots, lower triangle by rows; added_: at rest
+  std::vector<std::uint64_t> known_, added_known_;  // versions, and points, of the two that they belong to
   std::vector<int> sample_;
   std::vector<HalfSpacePoint> point_;
   std::vector<Matrix3> map_;
-  std::vector<std::uint64_t> version_, used_;
+  std::vector<std::uint64_t> taken_;    // another number whenever a slot gets a point
+  std::vector<std::uint64_t> version_;  // the same, or the compliance has changed
+  std::vector<std::uint64_t> state_;    // revision to which the version belongs
+  std::vector<std::uint64_t> used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
   int next_ = 0;
 };

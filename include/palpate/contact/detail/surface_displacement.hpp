@@ -109,8 +109,10 @@ class SurfaceDisplacement {
   /// largest displacement of the loaded vertices. The latter is no bound for a part that rotates about another;
   /// `Candidates` searches for such parts.
   double reach(const TissueView& tissue) noexcept;
-  /// The same for deviations; the vertices whose forces are expected count, too.
-  double reach_from_expected(const TissueView& tissue) noexcept;
+  /// The same for distances from where the surface is expected; the vertices whose forces are expected count, too. The
+  /// half-space moves points between vertices: `subfacet` is null where there is none.
+  double reach_from_expected(const TissueView& tissue, const SubfacetCompliance* subfacet,
+                             const ContactSamples& samples) noexcept;
 
  private:
   void change_loads() noexcept {

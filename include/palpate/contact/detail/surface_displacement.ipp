@@ -82,10 +82,10 @@ PALPATE_INLINE void SurfaceDisplacement::compute_shown(const SubfacetCompliance&
   shown_stamp_[i] = load_generation_;
   Vector3& u = shown_[i];
   u.setZero();
-  for (const SubfacetCompliance::Block& block : subfacet.blocks(vertex)) {
-    const auto j = static_cast<std::size_t>(block.vertex);
-    if (loaded_stamp_[j] == load_generation_) u.noalias() += block.shown.transpose() * loaded_[j];
-  }
+  const std::span<const int> others = subfacet.vertices_of_blocks(vertex);
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (const auto j = static_cast<std::size_t>(others[k]); loaded_stamp_[j] == load_generation_)
+      u.noalias() += subfacet.blocks(vertex)[k].shown.transpose() * loaded_[j];
 }
 
 inline Vector3 SurfaceDisplacement::of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept {
@@ -231,13 +231,19 @@ PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, i
   return (position(tissue, vertex) - expected.position(vertex)).norm();
 }
 
-PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView& tissue) noexcept {
+/// The half-space moves loaded points farther than others, but they are also stretched more, which makes it stiffer.
+PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView& tissue,
+                                                               const SubfacetCompliance* subfacet,
+                                                               const ContactSamples& samples) noexcept {
+  constexpr double stretched = 1.5;
   const ExpectedSurface& expected = tissue.contact_surface().expected();
   if (!expected.is_known()) return reach(tissue);
   double loaded = 0.0;
   for (const VertexForce& f : forces()) loaded = std::max(loaded, deviation(tissue, f.vertex));
   for (const int v : expected.loaded()) loaded = std::max(loaded, deviation(tissue, v));
-  return 2.0 * loaded + longest_path();
+  if (subfacet == nullptr || load_count_ == 0) return 2.0 * loaded;
+  measure_dents(tissue, *subfacet, samples);
+  return 2.0 * loaded + stretched * largest_dent_;
 }
 
 PALPATE_INLINE double SurfaceDisplacement::longest_path() const noexcept {
