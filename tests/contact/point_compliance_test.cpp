@@ -5,7 +5,9 @@
 
 #include "catch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 using namespace palpate;
 
@@ -36,7 +38,7 @@ struct CountingTissue : StillTissue {
     if (i > j) return value(j, i).transpose();
     Matrix3 m;
     for (int k = 0; k < 9; ++k) m.data()[k] = scale * std::sin(1.0 + 3.1 * i + 7.7 * j + 0.9 * k);
-    return m;
+    return i == j ? Matrix3(0.5 * (m + m.transpose())) : m;
   }
   std::uint64_t compliance_revision() const noexcept { return revision; }
   double compliance_bound(int) const noexcept { return 3.0 * scale; }
@@ -47,6 +49,34 @@ struct CountingTissue : StillTissue {
   }
 };
 static_assert(TissueModel<CountingTissue>);
+
+/// The same, whose surface turns and stretches with every revision.
+struct StretchedTissue : CountingTissue {
+  Matrix3 half_space_map(int v) const noexcept {
+    const auto state = static_cast<double>(revision);
+    return Matrix3(Eigen::AngleAxisd(0.3 * state + 0.05 * v, Vector3(1.0, 2.0, 3.0).normalized())) /
+           (1.0 + 0.2 * state);
+  }
+};
+static_assert(TissueModel<StretchedTissue>);
+
+/// Every vertex known, and shown by itself and both neighbours.
+std::shared_ptr<const SubfacetCompliance> subfacet_of(const ContactSurface& surface) {
+  std::vector<HalfSpacePoint> vertices;
+  std::vector<SubfacetCompliance::Block> blocks;
+  std::vector<int> first{0};
+  for (int v = 0; v < surface.vertex_count(); ++v) {
+    vertices.push_back({.position = surface.position(v),
+                        .normal = Vector3(0.0, 0.0, 1.0),
+                        .root = HalfSpacePoint::root_of(2e3),
+                        .poisson_ratio = 0.4,
+                        .length = 0.01});
+    for (int other = std::max(0, v - 1); other < std::min(surface.vertex_count(), v + 2); ++other)
+      blocks.push_back({other, 0.01 / (1.0 + std::abs(v - other)) * Matrix3::Identity()});
+    first.push_back(static_cast<int>(blocks.size()));
+  }
+  return std::make_shared<SubfacetCompliance>(std::move(vertices), std::move(first), std::move(blocks));
+}
 
 Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const ContactSample& q) {
   Matrix3 sum = Matrix3::Zero();
@@ -116,4 +146,43 @@ TEST_CASE("cached compliance is not read again until the tissue's revision chang
   tissue.revision = 1;
   CHECK(read(3).isApprox(2.0 * first, 1e-14));
   CHECK(tissue.reads > one_point);
+}
+
+TEST_CASE("the half-space between points is kept while the surface turns and stretches",
+          "[contact][point_compliance]") {
+  StretchedTissue tissue;
+  Candidates points(ContactSamples(tissue.surface, 0.004), subfacet_of(tissue.surface), 8);
+  const int count = points.samples().first_of(static_cast<int>(tissue.surface.triangles().size()));
+  const TissueView view(tissue);
+  PointCompliance kept(8);
+  testing::Random random(62);
+  double worst = 0.0;
+  int pairs = 0;
+  for (int round = 0; round < 200; ++round) {
+    if (round % 3 == 0) ++tissue.revision;
+    if (round % 40 == 20) {  // a pad is pinned, and released
+      const std::array<int, 1> pad{5};
+      points.pin(round % 80 == 20 ? std::span<const int>(pad) : std::span<const int>());
+      kept.forget();
+    }
+    PointCompliance fresh(8);
+    std::vector<int> slots, own;
+    for (PointCompliance* c : {&kept, &fresh}) c->begin_tick(tissue.compliance_revision()), c->begin_rows();
+    for (int k = 0; k < 6; ++k) {
+      const int sample = static_cast<int>(random.uniform(0.0, round % 2 == 0 ? 8.0 : count - 1e-9));
+      slots.push_back(kept.slot_of(view, points, sample, -1));
+      own.push_back(fresh.slot_of(view, points, sample, -1));
+    }
+    for (std::size_t i = 0; i < slots.size(); ++i)
+      for (std::size_t j = 0; j < slots.size(); ++j) {
+        if (slots[i] < slots[j]) continue;
+        const Matrix3 found = kept(view, points, slots[i], slots[j]);
+        const Matrix3 right = own[i] >= own[j] ? Matrix3(fresh(view, points, own[i], own[j]))
+                                               : Matrix3(fresh(view, points, own[j], own[i]).transpose());
+        worst = std::max(worst, (found - right).cwiseAbs().maxCoeff());
+        ++pairs;
+      }
+  }
+  CHECK(pairs > 4000);
+  CHECK(worst <= 1e-13);
 }

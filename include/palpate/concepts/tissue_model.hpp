@@ -138,8 +138,8 @@ concept HasOutOfDateMaterials = (requires { &T::compliance; &T::contact_surface;
 /// - `to_world()` maps the frame of the surface to the world frame.
 /// - `compliance(i, j)` is the 3 x 3 displacement [m/N] of vertex i per force on vertex j, whose column was required: a
 /// matrix, or an Eigen expression that stays valid until the next `require_columns`.
-/// - `compliance_revision()` changes whenever a value that `compliance` returned is no longer valid; it is constant for
-/// a tissue whose compliance never changes.
+/// - `compliance_revision()` changes whenever a value that `compliance` returned is no longer valid, to a number that no
+/// other compliance had; it is constant for a tissue whose compliance never changes.
 /// - `compliance_bound(j)` is an upper bound of the displacement [m/N] of any vertex per unit force on j.
 /// - `compliance_floor()` is a tiny compliance that prevents division by zero at a fixed vertex.
 /// A tissue may also have `displacement_of(i, forces)`, the sum of C_ij f_j as a Vector3, where it is faster than the

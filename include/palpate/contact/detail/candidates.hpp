@@ -136,8 +136,10 @@ class Candidates {
 
   /// Upper bound of the displacement of the surface near the tools, as far as it is known [m].
   double reach(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
-  /// The same for distances from where the surface is expected.
-  double reach_from_expected(const TissueView& tissue, SurfaceDisplacement& displacement) const noexcept;
+  /// The same for distances from where the surface is expected. A tool that does not press may be at a part that
+  /// others move farther than the points that they press: the path of these counts, too.
+  double reach_from_expected(const TissueView& tissue, std::span<const ContactTool> tools,
+                             SurfaceDisplacement& displacement) const noexcept;
 
   /// Checks the next few vertices of the scan.
   void look_round(const TissueView& tissue, std::span<const ContactTool> tools,

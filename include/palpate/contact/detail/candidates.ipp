@@ -266,10 +266,15 @@ PALPATE_INLINE double Candidates::reach(const TissueView& tissue, SurfaceDisplac
   return std::max({displacement.reach(tissue), far_.rest, far_last_round_.rest});
 }
 
-PALPATE_INLINE double Candidates::reach_from_expected(const TissueView& tissue,
+PALPATE_INLINE double Candidates::reach_from_expected(const TissueView& tissue, std::span<const ContactTool> tools,
                                                       SurfaceDisplacement& displacement) const noexcept {
-  return std::max(
-      {displacement.reach_from_expected(tissue, subfacet_.get(), samples_), far_.expected, far_last_round_.expected});
+  std::array<bool, maximum_tools> presses{};
+  for (const Candidate& c : list_.points.items())
+    if (c.force > 0.0) presses[static_cast<std::size_t>(c.tool)] = true;
+  double reach = displacement.reach_from_expected(tissue, subfacet_.get(), samples_);
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    if (tools[t].active && !presses[t]) reach = std::max(reach, displacement.longest_path());
+  return std::max({reach, far_.expected, far_last_round_.expected});
 }
 
 /// In a steep dent the sphere is on the outer side of the deformed facet only. For a point that it reaches from behind,

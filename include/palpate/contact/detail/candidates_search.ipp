@@ -70,7 +70,7 @@ PALPATE_INLINE void Candidates::prepare(const TissueView& tissue, std::span<cons
   if (!search_.runs) {
     begin(search_, next_list_, maximum() - static_cast<int>(loaded_.size()));
     search_.in_parts = true;
-    next_list_.reach = reach_from_expected(tissue, displacement);
+    next_list_.reach = reach_from_expected(tissue, tools, displacement);
   }
   search_.reach = next_list_.reach + (surface_travel_ - next_list_.surface_built);
   const double aim = leaves_ * (part - begin_used) / (end_used - begin_used);
@@ -86,7 +86,7 @@ PALPATE_INLINE void Candidates::build(const TissueView& tissue, std::span<const 
   store_loaded();
   begin(search_, list_, maximum());
   keep_loaded(tissue, tools, displacement);
-  search_.reach = list_.reach = reach_from_expected(tissue, displacement);
+  search_.reach = list_.reach = reach_from_expected(tissue, tools, displacement);
   while (advance(tissue, tools, search_, list_, displacement)) continue;
   leaves_ = search_.leaves;
   search_.runs = false;

@@ -113,6 +113,8 @@ class SurfaceDisplacement {
   /// half-space moves points between vertices: `subfacet` is null where there is none.
   double reach_from_expected(const TissueView& tissue, const SubfacetCompliance* subfacet,
                              const ContactSamples& samples) noexcept;
+  /// Of the points with loads [m].
+  double longest_path() const noexcept;
 
  private:
   void change_loads() noexcept {
@@ -123,8 +125,6 @@ class SurfaceDisplacement {
   void measure_dents(const TissueView& tissue, const SubfacetCompliance& subfacet,
                      const ContactSamples& samples) noexcept;
   void blend_loads(const SurfaceDisplacement& before, double part, const ContactSamples& samples) noexcept;
-  /// Of the points with loads [m].
-  double longest_path() const noexcept;
   void compute_shown(const SubfacetCompliance& subfacet, int vertex) noexcept;
   /// Displacement of the mesh at a point [m].
   inline Vector3 of_mesh(const TissueView& tissue, const ContactSample& sample) noexcept;
@@ -146,7 +146,7 @@ class SurfaceDisplacement {
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
   // Of loaded points: the largest difference from where the vertices alone put them, and what the half-space moves them
   // at most [m]; the mean of their normals at rest; whether all loads press, on surfaces that face about as that mean.
-  double largest_dent_ = 0.0, largest_half_space_ = 0.0;
+  double largest_dent_ = 0.0, largest_half_space_ = 0.0, dent_before_ = 0.0;
   Vector3 pressed_normal_ = Vector3::Zero();
   bool only_presses_ = false;
 };

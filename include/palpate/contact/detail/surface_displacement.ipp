@@ -131,6 +131,7 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
                                                        const ContactSamples& samples) noexcept {
   constexpr double small = 0.05;
   if (std::exchange(dent_stamp_, generation_) == generation_) return;
+  dent_before_ = largest_dent_;
   pressed_normal_.setZero();
   double dent = 0.0, half_space = 0.0, largest = 0.0;  // the first two squared
   const std::span<const PointLoad> loads(loads_.data(), static_cast<std::size_t>(load_count_));
@@ -232,6 +233,8 @@ PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, i
 }
 
 /// The half-space moves loaded points farther than others, but they are also stretched more, which makes it stiffer.
+/// Right after a step the places of loaded points belong to the surface before it: the dent of that surface counts,
+/// too.
 PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView& tissue,
                                                                const SubfacetCompliance* subfacet,
                                                                const ContactSamples& samples) noexcept {
@@ -243,7 +246,7 @@ PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView&
   for (const int v : expected.loaded()) loaded = std::max(loaded, deviation(tissue, v));
   if (subfacet == nullptr || load_count_ == 0) return 2.0 * loaded;
   measure_dents(tissue, *subfacet, samples);
-  return 2.0 * loaded + stretched * largest_dent_;
+  return 2.0 * loaded + stretched * std::max(largest_dent_, dent_before_);
 }
 
 PALPATE_INLINE double SurfaceDisplacement::longest_path() const noexcept {
