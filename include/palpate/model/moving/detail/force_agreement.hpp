@@ -39,7 +39,7 @@ class ForceAgreement {
   bool is_poor() const noexcept { return remembered_ > 0.07 * all_; }
 
  private:
-  static constexpr double softest = ContactSprings::usual_stiffness, stiffest = 5.0;
+  static constexpr double softest = ContactSprings::usual_stiffness, stiffest = 7.0;
 
   std::vector<Vector3> force_, change_, next_;  // per vertex
   std::vector<Vector3> differed_;               // the forces of the tick that differed most
