@@ -32,7 +32,7 @@ class SubfacetCompliance {
   /// displacement of other vertices, and of j itself, per force on j.
   SubfacetCompliance(std::vector<HalfSpacePoint> vertices, std::vector<int> first, std::vector<Block> blocks)
       : vertices_(std::move(vertices)), first_(std::move(first)), blocks_(std::move(blocks)) {
-    sort_blocks();
+    index_blocks();
   }
 
   explicit SubfacetCompliance(const ProjectedHalfSpace& table);
@@ -82,15 +82,15 @@ class SubfacetCompliance {
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  /// Sorts the blocks of every vertex by the number of the other vertex, and lists these, for `find`.
-  void sort_blocks();
+  /// Sorts the blocks of every vertex by the number of the other vertex, for `find`, and fills `block_vertex_`.
+  void index_blocks();
   /// The block for the displacement of vertex i per force on vertex j; null where none is stored. A binary search.
   const Block* find(int i, int j) const noexcept;
 
   std::vector<HalfSpacePoint> vertices_;
   std::vector<int> first_;
   std::vector<Block> blocks_;
-  std::vector<int> block_vertex_;  // of each block
+  std::vector<int> block_vertex_;  // of each block, without the matrices
   bool has_copies_ = false;
 };
 

@@ -23,7 +23,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const ProjectedHalfSpace& 
     blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
     first_.push_back(static_cast<int>(blocks_.size()));
   }
-  sort_blocks();
+  index_blocks();
 }
 
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodies) {
@@ -43,7 +43,7 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
     has_copies_ = has_copies_ || (body.own != nullptr && body.own->has_copies_);
     number = last + 1;
   }
-  sort_blocks();
+  index_blocks();
 }
 
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices) {
@@ -59,11 +59,11 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
     first_.push_back(static_cast<int>(blocks_.size()));
   }
   has_copies_ = whole.has_copies_ || std::ranges::any_of(copies, [](const auto& all) { return all.size() > 1; });
-  sort_blocks();
+  index_blocks();
 }
 
 /// By insertion: only those of a surface after cuts are not in order.
-PALPATE_INLINE void SubfacetCompliance::sort_blocks() {
+PALPATE_INLINE void SubfacetCompliance::index_blocks() {
   for (std::size_t v = 0; v + 1 < first_.size(); ++v)
     for (std::size_t k = at(first_[v]) + 1; k < at(first_[v + 1]); ++k) {
       const Block block = blocks_[k];

@@ -9,14 +9,14 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// and what SubfacetCompliance adds to it. That of a point per force on itself has no self compliance of the
 /// half-space: it depends on the area that the point stands for, which changes.
 /// Contact points are fixed in the material: while they press, only directions change, and these blocks do not. A point
-/// keeps its slot until another point needs it. Where tissue moves, its compliance changes with every step; what is
-/// added to it is that of the body at rest, rotated with the surface, and need not be computed again.
+/// keeps its slot until another point needs it. The compliance of tissue that moves changes with every step. What is
+/// added to it is that of the body at rest, rotated with the surface: it is computed once for a pair of points.
 class PointCompliance {
  public:
   /// Allocates; for set-up.
   explicit PointCompliance(int capacity);
 
-  /// After this, nothing of the tissue's compliance is known if it has changed since the last tick.
+  /// The revision of the tissue's compliance: blocks of another one are computed again.
   void begin_tick(std::uint64_t revision) noexcept { revision_ = revision; }
   /// Clears the cache: points are renumbered.
   void forget() noexcept;
@@ -46,7 +46,7 @@ class PointCompliance {
   PALPATE_ALWAYS_INLINE const Matrix3& operator()(const TissueView& tissue, const Candidates& points, int p,
                                                   int q) noexcept {
     const std::size_t i = at(p) * (at(p) + 1) / 2 + at(q);
-    const std::uint64_t version = both(version_[at(p)], version_[at(q)]);
+    const std::uint64_t version = pair_of(version_[at(p)], version_[at(q)]);
     if (known_[i] != version) {
       known_[i] = version;
       compute(tissue, points, p, q, i);
@@ -61,16 +61,18 @@ class PointCompliance {
   /// Out of line, so that the look-up is inlined.
   void compute(const TissueView& tissue, const Candidates& points, int p, int q, std::size_t pair) noexcept;
   const Matrix3& added(const Candidates& points, int p, int q, std::size_t pair) noexcept;
-  static std::uint64_t both(std::uint64_t p, std::uint64_t q) noexcept { return p << 32 | q; }
+  static std::uint64_t pair_of(std::uint64_t p, std::uint64_t q) noexcept { return p << 32 | q; }
 
-  std::vector<Matrix3> block_, added_;              // of pairs of slots, lower triangle by rows; added_: at rest
-  std::vector<std::uint64_t> known_, added_known_;  // versions, and points, of the two that they belong to
+  // Of pairs of slots, lower triangle by rows:
+  std::vector<Matrix3> block_, added_;              // added_: what is added to the compliance of the mesh, at rest
+  std::vector<std::uint64_t> known_, added_known_;  // pair_of the `version_`, and of the `taken_`, that they belong to
+  // Of slots:
   std::vector<int> sample_;
   std::vector<HalfSpacePoint> point_;
   std::vector<Matrix3> map_;
-  std::vector<std::uint64_t> taken_;    // another number whenever a slot gets a point
-  std::vector<std::uint64_t> version_;  // the same, or the compliance has changed
-  std::vector<std::uint64_t> state_;    // revision to which the version belongs
+  std::vector<std::uint64_t> taken_;     // changes when the slot gets another point
+  std::vector<std::uint64_t> version_;   // changes also with the revision of the compliance; 0: not known
+  std::vector<std::uint64_t> of_state_;  // the revision that the version belongs to
   std::vector<std::uint64_t> used_;
   std::uint64_t versions_ = 0, rows_ = 0, revision_ = 0;
   int next_ = 0;

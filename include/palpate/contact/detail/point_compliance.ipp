@@ -18,7 +18,7 @@ PALPATE_INLINE PointCompliance::PointCompliance(int capacity)
       map_(at(capacity), Matrix3::Identity()),
       taken_(at(capacity), 0),
       version_(at(capacity), 0),
-      state_(at(capacity), 0),
+      of_state_(at(capacity), 0),
       used_(at(capacity), 0) {}
 
 PALPATE_INLINE void PointCompliance::forget() noexcept {
@@ -36,15 +36,15 @@ PALPATE_INLINE int PointCompliance::slot_of(const TissueView& tissue, const Cand
     const auto found = std::find(sample_.begin(), sample_.end(), sample);
     hint = found != sample_.end() ? static_cast<int>(found - sample_.begin()) : take(points, sample);
   }
-  if (version_[at(hint)] == 0 || state_[at(hint)] != revision_) renew(tissue, points, hint);
+  if (version_[at(hint)] == 0 || of_state_[at(hint)] != revision_) renew(tissue, points, hint);
   used_[at(hint)] = rows_;
   return hint;
 }
 
 PALPATE_INLINE const Matrix3& PointCompliance::added(const Candidates& points, int p, int q,
                                                      std::size_t pair) noexcept {
-  const std::uint64_t both_points = both(taken_[at(p)], taken_[at(q)]);
-  if (std::exchange(added_known_[pair], both_points) == both_points) return added_[pair];
+  const std::uint64_t points_of_pair = pair_of(taken_[at(p)], taken_[at(q)]);
+  if (std::exchange(added_known_[pair], points_of_pair) == points_of_pair) return added_[pair];
   Matrix3& added = added_[pair];
   added = -points.subfacet()->shown(points.samples()[sample_[at(p)]], points.samples()[sample_[at(q)]]);
   if (p != q) added += SubfacetCompliance::half_space(point_[at(p)], point_[at(q)]);
@@ -77,7 +77,7 @@ PALPATE_INLINE int PointCompliance::take(const Candidates& points, int sample) n
 PALPATE_INLINE void PointCompliance::renew(const TissueView& tissue, const Candidates& points, int slot) noexcept {
   if (tissue.has_half_space_map()) map_[at(slot)] = tissue.half_space_map_at(points.samples()[sample_[at(slot)]]);
   version_[at(slot)] = ++versions_ & 0xffffffffu;
-  state_[at(slot)] = revision_;
+  of_state_[at(slot)] = revision_;
 }
 
 }}  // namespace palpate

@@ -146,7 +146,8 @@ class SurfaceDisplacement {
   std::uint64_t load_generation_ = 1;  // of what depends on the loads only, not on the tissue's compliance
   // Of loaded points: the largest difference from where the vertices alone put them, and what the half-space moves them
   // at most [m]; the mean of their normals at rest; whether all loads press, on surfaces that face about as that mean.
-  double largest_dent_ = 0.0, largest_half_space_ = 0.0, dent_before_ = 0.0;
+  double largest_dent_ = 0.0, largest_half_space_ = 0.0;
+  double dent_before_ = 0.0;  // largest_dent_ of the measurement before
   Vector3 pressed_normal_ = Vector3::Zero();
   bool only_presses_ = false;
 };

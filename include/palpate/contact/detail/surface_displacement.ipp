@@ -232,9 +232,9 @@ PALPATE_INLINE double SurfaceDisplacement::deviation(const TissueView& tissue, i
   return (position(tissue, vertex) - expected.position(vertex)).norm();
 }
 
-/// The half-space moves loaded points farther than others, but they are also stretched more, which makes it stiffer.
-/// Right after a step the places of loaded points belong to the surface before it: the dent of that surface counts,
-/// too.
+/// The half-space moves loaded points farther than others. Under them it may be stiffer, since the surface is stretched
+/// there: hence the factor. Right after a step the stored displacements of loaded points belong to the surface before
+/// the step, so the dent of that surface counts, too.
 PALPATE_INLINE double SurfaceDisplacement::reach_from_expected(const TissueView& tissue,
                                                                const SubfacetCompliance* subfacet,
                                                                const ContactSamples& samples) noexcept {
