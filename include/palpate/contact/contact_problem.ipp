@@ -582,8 +582,8 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
 }
 
 PALPATE_INLINE void ContactProblem::reset() noexcept {
-  displacement_.clear();
-  start_.clear();
+  displacement_.reset();
+  start_.reset();
   candidates_.reset();
   rows_.reset();
   levels_.reset();

@@ -43,6 +43,11 @@ class SurfaceDisplacement {
     count_ = load_count_ = 0;
     change_loads();
   }
+  /// Back to the state after construction. The dents before a step limit the search after it.
+  void reset() noexcept {
+    clear();
+    largest_dent_ = dent_before_ = 0.0;
+  }
   /// Adds a force on a vertex; `slot` stores its entry between calls (initially -1).
   void add(int vertex, const Vector3& force, int& slot) noexcept;
 
