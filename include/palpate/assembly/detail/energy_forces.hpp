@@ -6,6 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -30,8 +31,9 @@ class EnergyForces {
   virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
-  /// Energy [J] and forces f [N] of the body rotated as a whole, by u [m]: all of it is due to rounding. Nodes at
-  /// `positions` [m].
+  /// Energy [J] and forces f [N] of the body rotated as a whole, by u [m]: all of it is due to rounding. The energy is
+  /// the largest of some rotations, since errors of elements may cancel; u and f are of the last. Nodes at `positions`
+  /// [m].
   virtual double evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept;
 
   /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.
@@ -77,13 +79,18 @@ class TangentEnergyForces final : public EnergyForces {
 };
 
 inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept {
-  Matrix3 turn;
-  turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
-  turn /= 3.0;
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    set_node_vector(u, static_cast<Index>(i), turn * positions[i] - positions[i]);
-  DeformationReport report;
-  return evaluate(u, f, report);
+  Matrix3 one, other;
+  one << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  other << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  one /= 3.0;
+  double largest = 0.0;
+  for (const Matrix3& turn : {Matrix3(one * one), Matrix3(one * other), Matrix3(other * one), Matrix3(other), one}) {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      set_node_vector(u, static_cast<Index>(i), turn * positions[i] - positions[i]);
+    DeformationReport report;
+    largest = std::max(largest, std::abs(evaluate(u, f, report)));
+  }
+  return largest;
 }
 
 }}  // namespace palpate

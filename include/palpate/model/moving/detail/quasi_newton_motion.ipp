@@ -74,7 +74,7 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
     return;
   }
   rotated_ = noise_ = u_;
-  floor_.energy = std::abs(forces_->evaluate_rotated(body_.positions, rotated_, noise_));
+  floor_.energy = forces_->evaluate_rotated(body_.positions, rotated_, noise_);
   floor_.force = noise_.norm();
   for (Index dof = 0; dof < noise_.size(); ++dof)
     if (body_.conditions.is_constrained(dof)) noise_[dof] = 0.0;
@@ -334,7 +334,8 @@ PALPATE_INLINE double QuasiNewtonMotion::follow_loads(double most) {
   const VectorX load = load_, from = u_;
   double reached = 0.0, part = 0.125, left = infinity;
   while (reached < 1.0 && part >= smallest) {
-    const double next = std::min(1.0, reached + part);
+    part = std::min(part, 1.0 - reached);
+    const double next = reached + part;
     const VectorX before = u_;
     load_ = next * load;
     prescribed_ = from + next * (body_.conditions.prescribed - from);
@@ -437,7 +438,7 @@ PALPATE_INLINE double QuasiNewtonMotion::energy_rounding() const noexcept {
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::potential_rounding() const noexcept {
-  return 2.0 * floor_.energy + 8.0 * forces_->rounding() * potential_scale_;
+  return 4.0 * floor_.energy + 8.0 * forces_->rounding() * potential_scale_;
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::accept() noexcept {
