@@ -20,7 +20,7 @@ enum class StatusFlag : std::uint32_t {
   deadline_missed = 1u << 4,       ///< the tick came later than its period allows
   inverted = 1u << 5,              ///< an element is inverted (non-linear models)
   solver_not_converged = 1u << 6,  ///< contact or linear solver stopped at its iteration limit; or the force goes back
-                                   ///< and forth from tick to tick although no device moves
+                                   ///< and forth from tick to tick
   energy_injected = 1u << 7,       ///< the energy tank is nearly empty: forces are scaled down
   degraded_model = 1u << 8,        ///< something was omitted to stay within bounds (contact capacity, late compliance)
   disconnected = 1u << 9,          ///< the device reports invalid data

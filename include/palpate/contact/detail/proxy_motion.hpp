@@ -43,9 +43,10 @@ class ProxyMotion {
   /// Ends a tick. With friction or at a thin plate the linearisations may go in a circle. When many ticks in turn have
   /// not converged although the devices hardly move, steps become shorter, until a device moves, or nothing presses.
   /// They also become longer again, after a time that doubles with every failure: shorter steps cost more of them.
-  /// Returns whether the forces go back and forth from tick to tick although no device moves: every tick converges, to
-  /// another state than the one before. `presses`: whether a tool would penetrate without its force, or grasps; shorter
-  /// steps leave a part of the forces of tools that have gone. `scale`: of the forces [N], as for `relative_change`.
+  /// Returns whether the forces go back and forth from tick to tick although no device moves, or devices move steadily:
+  /// every tick converges, to another state than the one before. Some ticks after it are reported, too. `presses`:
+  /// whether a tool would penetrate without its force, or grasps; shorter steps leave a part of the forces of tools
+  /// that have gone. `scale`: of the forces [N], as for `relative_change`.
   bool end_tick(Tools tools, bool converged, bool presses, double scale) noexcept;
 
  private:
@@ -54,23 +55,29 @@ class ProxyMotion {
   static constexpr double least_part = 0.125, still = 0.01;   // still: path of a device in a tick, radii
   static constexpr double resting = 1e-4;                     // the same: it does not change the force
   static constexpr double alternating = 0.01;                 // change of a force per tick, back and forth, relative
+  static constexpr double alternating_in_motion = 0.03;       // the same while devices move
   inline static double allowed_part(const ContactTool& tool, double path) noexcept;
   static void rotate(ContactTool& tool, double part) noexcept;
-  bool alternates(Tools tools, double scale) noexcept;
+  enum class Pace : unsigned char { rests, steady, other };
 
   std::array<Vector3, maximum_tools> start_force_{}, start_torque_{}, target_{};
   /// Of a tool at the end of the last tick.
   struct Last {
     Vector3 force = Vector3::Zero(), target = Vector3::Zero();
-    Vector3 change = Vector3::Zero();  ///< of the force, while devices rest
+    Vector3 path = Vector3::Zero();    ///< of its device in that tick
+    Vector3 change = Vector3::Zero();  ///< of the force, while devices rest or move steadily
     int reversals = 0;                 ///< of that change, in turn
   };
+  inline static Pace pace(const ContactTool& tool, const Last& last) noexcept;
+  bool alternates(Tools tools, double scale) noexcept;
+
   std::array<Last, maximum_tools> last_{};
   std::array<bool, maximum_tools> active_{};
   std::array<Ahead, maximum_tools> ahead_{};
   double longest_part_ = 1.0;  // of a step
   int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
   int settled_ticks_ = 0;      // that converged with shorter steps
+  int reported_ticks_ = 0;     // that are still reported
   int wait_ = first_wait;
   bool clipped_ = false, arrived_ = true, took_whole_step_ = false;
 };
