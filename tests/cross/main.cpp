@@ -109,6 +109,10 @@ bool is_chosen(const Oracle& oracle, std::uint64_t number, const Arguments& a) {
 }
 
 void print(const Finding& f) {
+  if (f.oracle == "false alarms") {
+    std::printf("  %.0f of %.0f ticks with the force of the reference have a flag\n", f.found, f.expected);
+    return;
+  }
   std::printf("  %s: tick %d, tool %d: %.6g, expected %.6g%s%s%s\n", f.oracle.c_str(), f.tick, f.tool, f.found,
               f.expected, f.flagged ? ", flagged" : ", SILENT", f.flags.empty() ? "" : ": ", f.flags.c_str());
 }
@@ -119,6 +123,7 @@ struct Findings {
 
 struct Counts {
   std::uint64_t scenes = 0, refused = 0, ticks = 0, doubted = 0;
+  double right = 0.0, false_alarms = 0.0;  // ticks that have the force of the reference; those with a flag
   std::map<std::string, Findings> oracles;
   std::map<std::string, long> refusals, known, kinds;
   Coverage coverage;
@@ -175,6 +180,10 @@ class Sweep {
     counts_.ticks += static_cast<std::uint64_t>(v.alarms.ticks);
     counts_.doubted += static_cast<std::uint64_t>(v.alarms.doubted);
     for (const Finding& f : v.findings) {
+      if (f.oracle == "false alarms") {
+        counts_.right += f.expected, counts_.false_alarms += f.found;
+        continue;
+      }
       Findings& n = counts_.oracles[f.oracle];
       if (f.flagged) {
         ++n.flagged;
@@ -238,6 +247,9 @@ class Sweep {
     std::printf("\n| oracle | silent | known | flagged |\n|---|---|---|---|\n");
     for (const auto& [name, n] : counts_.oracles)
       std::printf("| %s | %ld | %ld | %ld |\n", name.c_str(), n.silent, n.known, n.flagged);
+    if (counts_.right > 0.0)
+      std::printf("\nfalse alarms: %.2f %% of %.0f ticks with the force of a reference\n",
+                  100.0 * counts_.false_alarms / counts_.right, counts_.right);
     for (const auto& [file, n] : counts_.known) std::printf("  known: %s: %ld\n", file.c_str(), n);
     const auto missing = counts_.coverage.missing();
     const auto all = Coverage::all().size();

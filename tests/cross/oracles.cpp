@@ -52,12 +52,14 @@ Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choo
   for (const Oracle& oracle : oracles()) {
     if (!choose(oracle) || !oracle.applies(scene)) continue;
     if (!r.refused.empty() && oracle.cost > 1) continue;  // a refusal is compared with others, no more
-    std::vector<Finding> found = oracle.check(scene, r);
-    const auto silent = std::find_if(found.begin(), found.end(), [](const Finding& f) { return !f.flagged; });
-    if (silent != found.end())
-      verdict.findings.push_back(*silent);
-    else if (!found.empty())
-      verdict.findings.push_back(found.front());
+    for (const Finding& f : oracle.check(scene, r)) {
+      const auto before = std::find_if(verdict.findings.begin(), verdict.findings.end(),
+                                       [&](const Finding& other) { return other.oracle == f.oracle; });
+      if (before == verdict.findings.end())
+        verdict.findings.push_back(f);
+      else if (before->flagged && !f.flagged)
+        *before = f;
+    }
   }
   verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return verdict;

@@ -43,7 +43,8 @@ struct Verdict {
   double seconds = 0.0;
 };
 
-/// Runs a scene with the oracles that `choose` accepts. A finding per oracle at most, a silent one where there is one.
+/// Runs a scene with the oracles that `choose` accepts. A finding per oracle at most, a silent one where there is one;
+/// and "false alarms", a count that is no fault, where there is a reference.
 Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choose);
 
 }  // namespace cross
