@@ -195,6 +195,7 @@ TEST_CASE("known failures have a cause and match only where they apply", "[cross
     INFO(k.file);
     Finding finding;
     finding.oracle = k.oracles.front();
+    finding.flags = only_torques;
     CHECK(k.matches(k.scene, finding));
     finding.oracle = "another";
     CHECK_FALSE(k.matches(k.scene, finding));

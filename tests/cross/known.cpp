@@ -19,8 +19,8 @@ bool holds(const std::string& text, double number, const Known::Condition& c) {
   return c.relation == "<" ? number < limit : number > limit;
 }
 
-/// Whether a value of a scene, or of one of its tools, meets a condition.
-bool is_met(const Scene& s, const Known::Condition& c) {
+/// Whether a value of a scene, of one of its tools, or of a finding meets a condition.
+bool is_met(const Scene& s, const Finding& f, const Known::Condition& c) {
   bool met = false, found = false;
   const auto look = [&](const char* name, const auto& value) {
     if (c.name != name) return;
@@ -38,6 +38,7 @@ bool is_met(const Scene& s, const Known::Condition& c) {
   look("tools", static_cast<double>(s.tools.size()));
   look("moves", moves(s.solver) ? 1.0 : 0.0);
   look("is_cut", is_cut(s) ? 1.0 : 0.0);
+  look("torques", f.flags.find(only_torques) != std::string::npos ? 1.0 : 0.0);
   if (!found) throw std::runtime_error("there is no value \"" + c.name + "\"");
   return met;
 }
@@ -68,7 +69,7 @@ Known read_one(const std::filesystem::path& path) {
 
 bool Known::matches(const Scene& s, const Finding& f) const {
   return std::find(oracles.begin(), oracles.end(), f.oracle) != oracles.end() &&
-         std::all_of(where.begin(), where.end(), [&](const Condition& c) { return is_met(s, c); });
+         std::all_of(where.begin(), where.end(), [&](const Condition& c) { return is_met(s, f, c); });
 }
 
 std::vector<Known> read_known(const std::string& folder) {

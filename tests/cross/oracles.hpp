@@ -18,6 +18,9 @@ struct Finding {
   std::string flags{};   ///< names of the flags
 };
 
+/// Added to the flags of a finding where the torques differ, and forces less.
+inline constexpr const char* only_torques = " (torques)";
+
 /// A check. `applies` is cheap; `check` may run the scene in other manners.
 struct Oracle {
   std::string name;
