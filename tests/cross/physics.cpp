@@ -192,6 +192,7 @@ std::vector<Finding> check_penetration(const Scene& s, const Run& r) {
 
 /// Elastic tissue is where it was when nothing presses any more.
 std::vector<Finding> check_back(const Scene& s, const Run& r) {
+  if (r.ticks.empty()) return {};
   const bool presses = std::any_of(r.ticks.back().begin(), r.ticks.back().end(),
                                    [](const ToolTick& t) { return t.force.squaredNorm() > 0.0; });
   if (presses || !(r.left > 0.05 * s.edge)) return {};
