@@ -22,7 +22,7 @@ std::vector<bool> reported(const std::vector<double>& forces, double path, bool 
     tool.target += Vector3(path, 0.0, 0.0);
     if (turn) path = -path;
     tool.force = Vector3(0.0, 0.1 * force, force);
-    result.push_back(motion.end_tick({&tool, 1}, true, true, 1.0));
+    result.push_back(motion.end_tick({&tool, 1}, true, force > 0.0, force > 0.0 ? 1.0 : 0.0));
   }
   return result;
 }
@@ -57,4 +57,8 @@ TEST_CASE("a force that has gone back and forth is reported for some ticks more"
   CHECK(result[3]);
   CHECK(result[9]);
   CHECK_FALSE(result[19]);
+  forces.resize(4);
+  forces.resize(10, 0.0);
+  CHECK(reported(forces, 0.0) ==
+        std::vector<bool>{false, false, false, true, false, false, false, false, false, false});
 }

@@ -78,6 +78,7 @@ class ProxyMotion {
   int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
   int settled_ticks_ = 0;      // that converged with shorter steps
   int reported_ticks_ = 0;     // that are still reported
+  Pace pace_ = Pace::other;    // of all tools in the last tick
   int wait_ = first_wait;
   bool clipped_ = false, arrived_ = true, took_whole_step_ = false;
 };

@@ -101,12 +101,15 @@ PALPATE_INLINE double ProxyMotion::relative_change(Tools tools, double scale) co
   return change > 0.0 ? change / scale : 0.0;
 }
 
-/// Whether a tool rests, or moves on in about the direction of the last tick without a rotation.
+/// Whether a tool rests, or moves on about as in the last tick, without a rotation.
 inline ProxyMotion::Pace ProxyMotion::pace(const ContactTool& tool, const Last& last) noexcept {
   const Vector3 path = tool.target - last.target;
   if (!tool.active || std::max(path.norm(), tool.end_path) <= resting * tool.radius) return Pace::rests;
   const bool rotates = tool.end_path > resting * tool.radius;
-  return !rotates && path.dot(last.path) > 0.7 * path.norm() * last.path.norm() ? Pace::steady : Pace::other;
+  const double length = path.norm(), before = last.path.norm();
+  const bool goes_on =
+      path.dot(last.path) > 0.7 * length * before && std::max(length, before) < 1.5 * std::min(length, before);
+  return goes_on && !rotates ? Pace::steady : Pace::other;
 }
 
 /// Twice in turn a change that is opposite to the one before: a slip that rebounds, or a tick without a reading, is
@@ -114,13 +117,16 @@ inline ProxyMotion::Pace ProxyMotion::pace(const ContactTool& tool, const Last& 
 PALPATE_INLINE bool ProxyMotion::alternates(Tools tools, double scale) noexcept {
   Pace pace_of_all = Pace::rests;
   for (std::size_t t = 0; t < tools.size(); ++t) pace_of_all = std::max(pace_of_all, pace(tools[t], last_[t]));
+  const bool has_changed = std::exchange(pace_, pace_of_all) != pace_of_all;
   const double least = (pace_of_all == Pace::rests ? alternating : alternating_in_motion) * scale;
+  if (!(scale > 0.0)) reported_ticks_ = 0;  // nothing presses
   for (std::size_t t = 0; t < tools.size(); ++t) {
     Last& last = last_[t];
     const Vector3 change = pace_of_all == Pace::other ? Vector3(Vector3::Zero()) : Vector3(tools[t].force - last.force);
-    const bool reverses = std::min(change.norm(), last.change.norm()) > least && change.dot(last.change) < 0.0;
+    const bool reverses =
+        !has_changed && std::min(change.norm(), last.change.norm()) > least && change.dot(last.change) < 0.0;
     last = {tools[t].force, tools[t].target, tools[t].target - last.target, change, reverses ? last.reversals + 1 : 0};
-    if (last.reversals > (pace_of_all == Pace::rests ? 1 : 2)) reported_ticks_ = patience;
+    if (scale > 0.0 && last.reversals > (pace_of_all == Pace::rests ? 1 : 2)) reported_ticks_ = patience;
   }
   return reported_ticks_ > 0 && reported_ticks_-- > 0;
 }
