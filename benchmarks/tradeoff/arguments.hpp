@@ -17,7 +17,7 @@ struct SceneOptions {
 /// What the command line contains. Files are not read yet.
 struct Arguments {
   SceneOptions scene;
-  double budget = 500e-6;  ///< time of 99 of 100 ticks [s]; by default half of what 1 kHz allows
+  double budget = 500e-6;  ///< p99 of the time of a tick [s]; by default half of what 1 kHz allows
   double edge = 0.2;       ///< of elements under the spheres where the mesh is refined near them [radii]
   std::string out = ".", only, document;
   bool full = false;

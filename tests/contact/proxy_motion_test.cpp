@@ -10,8 +10,8 @@ using namespace palpate;
 namespace {
 
 /// Whether a tick of a sphere of 5 mm is reported, with these forces [N], one per tick, and this path of the device
-/// [m] in every tick. `turn`: the direction of the path changes from tick to tick.
-std::vector<bool> reported(const std::vector<double>& forces, double path, bool turn = false) {
+/// [m] in every tick. `noisy`: the path reverses from tick to tick.
+std::vector<bool> reported(const std::vector<double>& forces, double path, bool noisy = false) {
   ProxyMotion motion;
   ContactTool tool;
   tool.radius = 5e-3;
@@ -20,7 +20,7 @@ std::vector<bool> reported(const std::vector<double>& forces, double path, bool 
   std::vector<bool> result;
   for (const double force : forces) {
     tool.target += Vector3(path, 0.0, 0.0);
-    if (turn) path = -path;
+    if (noisy) path = -path;
     tool.force = Vector3(0.0, 0.1 * force, force);
     result.push_back(motion.end_tick({&tool, 1}, true, force > 0.0, force > 0.0 ? 1.0 : 0.0));
   }

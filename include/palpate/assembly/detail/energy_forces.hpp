@@ -79,12 +79,13 @@ class TangentEnergyForces final : public EnergyForces {
 };
 
 inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept {
-  Matrix3 one, other;
-  one << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
-  other << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
-  one /= 3.0;
+  Matrix3 diagonal, vertical;  // by 60 degrees about (1, 1, 1), by 90 about z
+  diagonal << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  vertical << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  diagonal /= 3.0;
   double largest = 0.0;
-  for (const Matrix3& turn : {Matrix3(one * one), Matrix3(one * other), Matrix3(other * one), Matrix3(other), one}) {
+  for (const Matrix3& turn :
+       {Matrix3(diagonal * diagonal), Matrix3(diagonal * vertical), Matrix3(vertical * diagonal), vertical, diagonal}) {
     for (std::size_t i = 0; i < positions.size(); ++i)
       set_node_vector(u, static_cast<Index>(i), turn * positions[i] - positions[i]);
     DeformationReport report;

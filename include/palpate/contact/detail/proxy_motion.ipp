@@ -112,21 +112,22 @@ inline ProxyMotion::Pace ProxyMotion::pace(const ContactTool& tool, const Last& 
   return goes_on && !rotates ? Pace::steady : Pace::other;
 }
 
-/// Twice in turn a change that is opposite to the one before: a slip that rebounds, or a tick without a reading, is
-/// not. While a tool moves steadily forces change more, but do not go back in every tick.
+/// At rest a change must be opposite to the one before it twice in turn: a slip that rebounds, or a tick without a
+/// reading, is so once. While tools move steadily forces change more, so it must be three times, by more.
 PALPATE_INLINE bool ProxyMotion::alternates(Tools tools, double scale) noexcept {
   Pace pace_of_all = Pace::rests;
   for (std::size_t t = 0; t < tools.size(); ++t) pace_of_all = std::max(pace_of_all, pace(tools[t], last_[t]));
-  const bool has_changed = std::exchange(pace_, pace_of_all) != pace_of_all;
+  const bool presses = scale > 0.0, same_pace = std::exchange(pace_, pace_of_all) == pace_of_all;
   const double least = (pace_of_all == Pace::rests ? alternating : alternating_in_motion) * scale;
-  if (!(scale > 0.0)) reported_ticks_ = 0;  // nothing presses
+  const int most_reversals = pace_of_all == Pace::rests ? 1 : 2;
+  if (!presses) reported_ticks_ = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     Last& last = last_[t];
     const Vector3 change = pace_of_all == Pace::other ? Vector3(Vector3::Zero()) : Vector3(tools[t].force - last.force);
     const bool reverses =
-        !has_changed && std::min(change.norm(), last.change.norm()) > least && change.dot(last.change) < 0.0;
+        presses && same_pace && std::min(change.norm(), last.change.norm()) > least && change.dot(last.change) < 0.0;
     last = {tools[t].force, tools[t].target, tools[t].target - last.target, change, reverses ? last.reversals + 1 : 0};
-    if (scale > 0.0 && last.reversals > (pace_of_all == Pace::rests ? 1 : 2)) reported_ticks_ = patience;
+    if (last.reversals > most_reversals) reported_ticks_ = patience;
   }
   return reported_ticks_ > 0 && reported_ticks_-- > 0;
 }

@@ -437,6 +437,7 @@ PALPATE_INLINE double QuasiNewtonMotion::energy_rounding() const noexcept {
   return std::max(4.0 * floor_.work, of_sums * of_sums * potential_scale_);
 }
 
+/// Twice for the difference of two energies, and twice since the rotations need not show the largest error.
 PALPATE_INLINE double QuasiNewtonMotion::potential_rounding() const noexcept {
   return 4.0 * floor_.energy + 8.0 * forces_->rounding() * potential_scale_;
 }
