@@ -52,11 +52,6 @@ double rounding_tolerance(const Scene& scene) {
   return moves(scene.solver) || scene.friction > 0.0 ? 0.05 : has_float(scene.solver) ? 0.02 : 0.01;
 }
 
-/// Whether the tissue has inertia: explicit motion always has.
-bool vibrates(const Scene& s) {
-  return moves(s.solver) && (s.inertia || s.solver.find("quasi_newton") == std::string::npos);
-}
-
 std::vector<Finding> compare_with(const char* name, const Scene& scene, const Run& run, const Manner& manner,
                                   double tolerance) {
   return compare(name, scene, run, cross::run(scene, manner), tolerance);
@@ -83,7 +78,7 @@ Run without_vibration(const Run& run) {
 std::vector<Finding> compare_with_other_points(const char* name, const Scene& scene, const Run& run,
                                                const Manner& manner, double tolerance) {
   const Run other = cross::run(scene, manner);
-  std::vector<Finding> found = vibrates(scene)
+  std::vector<Finding> found = has_inertia(scene)
                                    ? compare(name, scene, without_vibration(run), without_vibration(other), tolerance)
                                    : compare(name, scene, run, other, tolerance);
   constexpr double coarse = 0.1;
@@ -197,7 +192,7 @@ std::vector<Finding> check_newton(const Scene& s, const Run& r) {
 }
 /// A press of tissue without memory that takes longer ends with the same force.
 bool ends_at_rest(const Scene& s) {
-  return !vibrates(s) && !is_cut(s) && s.law != "viscoelastic" && s.support_travels == 0.0 &&
+  return !has_inertia(s) && !is_cut(s) && s.law != "viscoelastic" && s.support_travels == 0.0 &&
          std::all_of(s.tools.begin(), s.tools.end(),
                      [](const ToolValue& t) { return t.path == "press" || t.path == "hold"; });
 }
@@ -236,11 +231,8 @@ bool can_slip(const Scene& s) {
     const double x = std::min(t.u, 1.0 - t.u) * s.edge * s.cells_x, y = std::min(t.v, 1.0 - t.v) * s.edge * s.cells_y;
     return std::min(x, y) > t.radius;
   };
-  const bool box = s.body == "block" || s.body == "plate" || s.body == "lobe";
-  const bool pinch = s.tools.size() == 2 && s.tools[0].opposite != s.tools[1].opposite &&
-                     s.tools[0].u == s.tools[1].u && s.tools[0].v == s.tools[1].v;
-  if (!box || !(pinch || std::all_of(s.tools.begin(), s.tools.end(), is_inside))) return false;
-  return s.friction > 0.0 && !vibrates(s) && !is_cut(s) && s.load == "none" && s.support_moves == 0.0 &&
+  if (!is_box(s) || !(is_pinch(s) || std::all_of(s.tools.begin(), s.tools.end(), is_inside))) return false;
+  return s.friction > 0.0 && !has_inertia(s) && !is_cut(s) && s.load == "none" && s.support_moves == 0.0 &&
          s.support_travels == 0.0 && std::all_of(s.tools.begin(), s.tools.end(), [](const ToolValue& t) {
            return (t.path == "press" || t.path == "hold") && !t.grasps;
          });
@@ -295,6 +287,19 @@ std::vector<Finding> check_worker(const Scene& s, const Run& r) {
 }
 
 }  // namespace
+
+bool has_inertia(const Scene& s) {
+  return moves(s.solver) && (s.inertia || s.solver.find("quasi_newton") == std::string::npos);
+}
+
+bool is_pinch(const Scene& s) {
+  return s.tools.size() == 2 && has_opposite(s) && s.tools[0].opposite != s.tools[1].opposite &&
+         s.tools[0].u == s.tools[1].u && s.tools[0].v == s.tools[1].v;
+}
+
+bool is_box(const Scene& s) {
+  return s.body == "block" || s.body == "plate" || s.body == "lobe";
+}
 
 Status excuses() {
   Status s;
@@ -380,7 +385,7 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
       if (a.force == b.force)
         f.flags += " torques, flags or bounds differ";
       else if ((a.force - b.force).norm() < 0.5 * apart)
-        f.flags += only_torques, f.found = a.torque.norm(), f.expected = b.torque.norm();
+        f.of_torques = true, f.found = a.torque.norm(), f.expected = b.torque.norm();
       findings.push_back(f);
       if (!f.flagged) return findings;
     }

@@ -5,6 +5,13 @@
 
 namespace cross {
 
+/// Whether the body can vibrate: explicit motion always has inertia.
+bool has_inertia(const Scene& scene);
+/// Two tools that press at one place from opposite sides.
+bool is_pinch(const Scene& scene);
+/// Whether the body has plane faces.
+bool is_box(const Scene& scene);
+
 /// Flags by which a tick reports that its solution is not the only one, or not the final one. That facets are coarse or
 /// displacements large is true of two runs alike.
 palpate::Status excuses();

@@ -84,6 +84,11 @@ TEST_CASE("a comparison sees what differs, and what a flag reports", "[cross]") 
   tick_of(other, k - 3).status.set(StatusFlag::solver_not_converged);
   CHECK(compare("same", scene, run, other, 0.02).front().flagged);
   CHECK_FALSE(compare("same", scene, run, other, 0.0).front().flagged);  // equal bits have no excuse
+  Run twisted = run;
+  for (int i = -2; i <= 2; ++i) tick_of(twisted, k + i).torque = Vector3(run.peak * scene.tools[0].radius, 0.0, 0.0);
+  tick_of(twisted, k - 2).force *= 1.001;
+  REQUIRE(compare("same", scene, run, twisted, 0.02).size() == 1);
+  CHECK(compare("same", scene, run, twisted, 0.02).front().of_torques);
   other.refused = "too_large";
   CHECK_FALSE(compare("same", scene, run, other, 0.02).front().flagged);
 }
@@ -195,7 +200,7 @@ TEST_CASE("known failures have a cause and match only where they apply", "[cross
     INFO(k.file);
     Finding finding;
     finding.oracle = k.oracles.front();
-    finding.flags = only_torques;
+    finding.of_torques = true;
     CHECK(k.matches(k.scene, finding));
     finding.oracle = "another";
     CHECK_FALSE(k.matches(k.scene, finding));

@@ -18,14 +18,14 @@ std::string to_line(const Finding& f) {
   std::ostringstream line;
   line.precision(17);
   line << "finding\t" << f.oracle << '\t' << f.tick << '\t' << f.tool << '\t' << f.found << '\t' << f.expected << '\t'
-       << f.flagged << '\t' << f.flags << '\n';
+       << f.flagged << '\t' << f.of_torques << '\t' << f.flags << '\n';
   return line.str();
 }
 
 std::string to_lines(const Verdict& v) {
   std::ostringstream text;
-  text << "refused\t" << v.refused << "\nticks\t" << v.alarms.ticks << '\t' << v.alarms.doubted << "\nseconds\t"
-       << v.seconds << '\n';
+  text << "refused\t" << v.refused << "\nticks\t" << v.alarms.ticks << '\t' << v.alarms.doubted << '\t'
+       << v.alarms.right << '\t' << v.alarms.right_doubted << "\nseconds\t" << v.seconds << '\n';
   std::string lines = text.str();
   for (const Finding& f : v.findings) lines += to_line(f);
   return lines + "end\n";
@@ -39,13 +39,14 @@ bool read_lines(const std::string& text, Verdict& v) {
     std::istringstream words(line);
     std::vector<std::string> field;
     for (std::string word; std::getline(words, word, '\t');) field.push_back(word);
-    field.resize(8);
+    field.resize(9);
     if (field[0] == "refused") v.refused = field[1];
-    if (field[0] == "ticks") v.alarms = {std::stol(field[1]), std::stol(field[2])};
+    if (field[0] == "ticks")
+      v.alarms = {std::stol(field[1]), std::stol(field[2]), std::stol(field[3]), std::stol(field[4])};
     if (field[0] == "seconds") v.seconds = std::stod(field[1]);
     if (field[0] == "finding")
       v.findings.push_back({field[1], std::stoi(field[2]), std::stoi(field[3]), std::strtod(field[4].c_str(), nullptr),
-                            std::strtod(field[5].c_str(), nullptr), field[6] == "1", field[7]});
+                            std::strtod(field[5].c_str(), nullptr), field[6] == "1", field[8], field[7] == "1"});
     complete = complete || line == "end";
   }
   return complete;

@@ -38,7 +38,7 @@ bool is_met(const Scene& s, const Finding& f, const Known::Condition& c) {
   look("tools", static_cast<double>(s.tools.size()));
   look("moves", moves(s.solver) ? 1.0 : 0.0);
   look("is_cut", is_cut(s) ? 1.0 : 0.0);
-  look("torques", f.flags.find(only_torques) != std::string::npos ? 1.0 : 0.0);
+  look("torques", f.of_torques ? 1.0 : 0.0);
   if (!found) throw std::runtime_error("there is no value \"" + c.name + "\"");
   return met;
 }

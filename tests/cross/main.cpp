@@ -109,12 +109,9 @@ bool is_chosen(const Oracle& oracle, std::uint64_t number, const Arguments& a) {
 }
 
 void print(const Finding& f) {
-  if (f.oracle == "false alarms") {
-    std::printf("  %.0f of %.0f ticks with the force of the reference have a flag\n", f.found, f.expected);
-    return;
-  }
-  std::printf("  %s: tick %d, tool %d: %.6g, expected %.6g%s%s%s\n", f.oracle.c_str(), f.tick, f.tool, f.found,
-              f.expected, f.flagged ? ", flagged" : ", SILENT", f.flags.empty() ? "" : ": ", f.flags.c_str());
+  std::printf("  %s: tick %d, tool %d: %.6g, expected %.6g%s%s%s%s\n", f.oracle.c_str(), f.tick, f.tool, f.found,
+              f.expected, f.of_torques ? " (torques)" : "", f.flagged ? ", flagged" : ", SILENT",
+              f.flags.empty() ? "" : ": ", f.flags.c_str());
 }
 
 struct Findings {
@@ -123,7 +120,7 @@ struct Findings {
 
 struct Counts {
   std::uint64_t scenes = 0, refused = 0, ticks = 0, doubted = 0;
-  double right = 0.0, false_alarms = 0.0;  // ticks that have the force of the reference; those with a flag
+  std::uint64_t right = 0, right_doubted = 0;
   std::map<std::string, Findings> oracles;
   std::map<std::string, long> refusals, known, kinds;
   Coverage coverage;
@@ -179,11 +176,9 @@ class Sweep {
     if (!v.refused.empty()) ++counts_.refused, ++counts_.refusals[v.refused];
     counts_.ticks += static_cast<std::uint64_t>(v.alarms.ticks);
     counts_.doubted += static_cast<std::uint64_t>(v.alarms.doubted);
+    counts_.right += static_cast<std::uint64_t>(v.alarms.right);
+    counts_.right_doubted += static_cast<std::uint64_t>(v.alarms.right_doubted);
     for (const Finding& f : v.findings) {
-      if (f.oracle == "false alarms") {
-        counts_.right += f.expected, counts_.false_alarms += f.found;
-        continue;
-      }
       Findings& n = counts_.oracles[f.oracle];
       if (f.flagged) {
         ++n.flagged;
@@ -247,9 +242,10 @@ class Sweep {
     std::printf("\n| oracle | silent | known | flagged |\n|---|---|---|---|\n");
     for (const auto& [name, n] : counts_.oracles)
       std::printf("| %s | %ld | %ld | %ld |\n", name.c_str(), n.silent, n.known, n.flagged);
-    if (counts_.right > 0.0)
-      std::printf("\nfalse alarms: %.2f %% of %.0f ticks with the force of a reference\n",
-                  100.0 * counts_.false_alarms / counts_.right, counts_.right);
+    if (counts_.right > 0)
+      std::printf("\nfalse alarms: %.2f %% of %llu ticks with the force of a reference\n",
+                  100.0 * static_cast<double>(counts_.right_doubted) / static_cast<double>(counts_.right),
+                  static_cast<unsigned long long>(counts_.right));
     for (const auto& [file, n] : counts_.known) std::printf("  known: %s: %ld\n", file.c_str(), n);
     const auto missing = counts_.coverage.missing();
     const auto all = Coverage::all().size();
@@ -278,6 +274,9 @@ int judge_file(const Arguments& a) {
   const Verdict v = judge_isolated(scene, [&](const Oracle& o) { return a.only.empty() || o.name == a.only; });
   std::printf("%s%ld ticks of tools, %ld with a flag\n", v.refused.empty() ? "" : (v.refused + ", ").c_str(),
               v.alarms.ticks, v.alarms.doubted);
+  if (v.alarms.right > 0)
+    std::printf("%ld of %ld ticks with the force of the reference have a flag\n", v.alarms.right_doubted,
+                v.alarms.right);
   bool silent = false;
   for (const Finding& f : v.findings) print(f), silent = silent || !f.flagged;
   return silent ? 1 : 0;

@@ -53,6 +53,11 @@ Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choo
     if (!choose(oracle) || !oracle.applies(scene)) continue;
     if (!r.refused.empty() && oracle.cost > 1) continue;  // a refusal is compared with others, no more
     for (const Finding& f : oracle.check(scene, r)) {
+      if (f.oracle == false_alarms) {
+        verdict.alarms.right += static_cast<long>(f.expected);
+        verdict.alarms.right_doubted += static_cast<long>(f.found);
+        continue;
+      }
       const auto before = std::find_if(verdict.findings.begin(), verdict.findings.end(),
                                        [&](const Finding& other) { return other.oracle == f.oracle; });
       if (before == verdict.findings.end())

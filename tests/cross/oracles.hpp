@@ -14,12 +14,14 @@ struct Finding {
   std::string oracle;
   int tick = 0, tool = 0;
   double found = 0.0, expected = 0.0;
-  bool flagged = false;  ///< a status flag reported it
-  std::string flags{};   ///< names of the flags
+  bool flagged = false;     ///< a status flag reported it
+  std::string flags{};      ///< names of the flags
+  bool of_torques = false;  ///< `found` and `expected` are torques: forces differ less
 };
 
-/// Added to the flags of a finding where the torques differ, and forces less.
-inline constexpr const char* only_torques = " (torques)";
+/// Name of a finding that is a count, not a fault: `found` of `expected` ticks whose force is within 5 % of a reference
+/// have a flag. `judge` adds it to the Alarms.
+inline constexpr const char* false_alarms = "false alarms";
 
 /// A check. `applies` is cheap; `check` may run the scene in other manners.
 struct Oracle {
@@ -36,7 +38,8 @@ const Oracle& find_oracle(const std::string& name);
 palpate::Status doubts();
 
 struct Alarms {
-  long ticks = 0, doubted = 0;  ///< of all tools; those with a flag of `doubts`
+  long ticks = 0, doubted = 0;        ///< of all tools; those with a flag of `doubts`
+  long right = 0, right_doubted = 0;  ///< the same of ticks that have the force of a reference
 };
 
 struct Verdict {
@@ -46,8 +49,7 @@ struct Verdict {
   double seconds = 0.0;
 };
 
-/// Runs a scene with the oracles that `choose` accepts. A finding per oracle at most, a silent one where there is one;
-/// and "false alarms", a count that is no fault, where there is a reference.
+/// Runs a scene with the oracles that `choose` accepts. A finding per oracle at most, a silent one where there is one.
 Verdict judge(const Scene& scene, const std::function<bool(const Oracle&)>& choose);
 
 }  // namespace cross

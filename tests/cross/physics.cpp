@@ -11,9 +11,6 @@ using namespace palpate;
 
 namespace {
 
-bool has_inertia(const Scene& s) {
-  return moves(s.solver) && !(s.solver.find("quasi_newton") != std::string::npos && !s.inertia);
-}
 bool remembers(const Scene& s) {
   return s.law == "viscoelastic";
 }
@@ -24,11 +21,6 @@ bool all_paths(const Scene& s, std::initializer_list<const char*> allowed) {
   return std::all_of(s.tools.begin(), s.tools.end(), [&](const ToolValue& t) {
     return std::find(allowed.begin(), allowed.end(), t.path) != allowed.end();
   });
-}
-/// Two tools that press at one place from opposite sides.
-bool is_pinch(const Scene& s) {
-  return s.tools.size() == 2 && has_opposite(s) && s.tools[0].opposite != s.tools[1].opposite &&
-         s.tools[0].u == s.tools[1].u && s.tools[0].v == s.tools[1].v;
 }
 /// One tool, or a pinch, that presses tissue without loads, as far as the direction of the force follows from the path
 /// alone.

@@ -49,14 +49,13 @@ double contact_radius(const Scene& s) {
 }  // namespace
 
 bool has_reference(const Scene& s) {
-  const bool box = s.body == "block" || s.body == "plate" || s.body == "lobe";
   const bool pressed = (s.tools.size() == 1 && !s.tools[0].opposite) || is_equal_pinch(s);
   for (const ToolValue& t : s.tools)
     if ((t.kind != "sphere" && t.kind != "capsule") || t.grasps || (t.path != "press" && t.path != "hold"))
       return false;
-  return box && pressed && s.law == "linear" && !moves(s.solver) && s.solver != "stiffening" && s.regions == "one" &&
-         s.friction == 0.0 && s.load == "none" && s.support_moves == 0.0 && s.cuts == 0 && s.poisson_ratio <= 0.49 &&
-         s.tools[0].depth <= 0.5 && s.tools[0].depth >= 0.03;
+  return is_box(s) && pressed && s.law == "linear" && !moves(s.solver) && s.solver != "stiffening" &&
+         s.regions == "one" && s.friction == 0.0 && s.load == "none" && s.support_moves == 0.0 && s.cuts == 0 &&
+         s.poisson_ratio <= 0.49 && s.tools[0].depth <= 0.5 && s.tools[0].depth >= 0.03;
 }
 
 Body reference_body(const Scene& s) {
@@ -98,11 +97,10 @@ const Vector3& given(const Scene& s, const ToolTick& t) {
   return s.corrected && !limited ? t.rendered : t.force;
 }
 
-/// Ticks whose force is within 5 % of the reference (`expected`), and those among them with a flag (`found`). That the
-/// linear law is beyond its range is true of the reference, too.
-Finding false_alarms(const Scene& s, const Run& r, const Run& fine) {
+/// That the linear law is beyond its range is true of the reference, too.
+Finding count_false_alarms(const Scene& s, const Run& r, const Run& fine) {
   const std::uint32_t alarms = doubts().bits() & ~static_cast<std::uint32_t>(StatusFlag::large_displacement);
-  Finding f{"false alarms"};
+  Finding f{false_alarms};
   f.flagged = true;
   for (std::size_t k = 0; k < std::min(r.ticks.size(), fine.ticks.size()); ++k) {
     const ToolTick &a = r.ticks[k][0], &b = fine.ticks[k][0];
@@ -122,7 +120,7 @@ std::vector<Finding> check_reference(const Scene& s, const Run& r) {
   const ToolTick &a = r.ticks[tick][0], &b = fine.ticks[tick][0];
   const double error = (given(s, a) - b.force).norm(), right = b.force.norm();
   const bool is_bounded = a.bound > 0.0 && std::isfinite(a.bound) && error <= a.bound;
-  std::vector<Finding> found{false_alarms(s, r, fine)};
+  std::vector<Finding> found{count_false_alarms(s, r, fine)};
   if (error > 0.1 * right && !is_bounded)
     found.push_back(at("reference", r, static_cast<int>(tick), 0, given(s, a).norm(), right, doubts()));
   return found;
