@@ -382,7 +382,7 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
       f.flagged =
           tolerance > 0.0 && (has_diverged || f.flagged || at(name, other, tick, tool, 0.0, 0.0, excuses()).flagged);
       has_diverged = f.flagged;
-      if (a.force == b.force)
+      if (tolerance == 0.0 && a.force == b.force)
         f.flags += " torques, flags or bounds differ";
       else if ((a.force - b.force).norm() < 0.5 * apart)
         f.of_torques = true, f.found = a.torque.norm(), f.expected = b.torque.norm();
