@@ -140,6 +140,10 @@ class ContactProblem {
   BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
   double error_of_points(std::size_t t) const noexcept;
+  template <class Visit>
+  void for_each_pressing(std::size_t t, Visit&& visit) const noexcept;
+  bool bends_coarse_elements(const ContactSurface& surface, std::size_t t, const ContactTool& tool) const noexcept;
+  bool presses_edge(const ContactSurface& surface, std::size_t t, double longest, double contact_radius) const noexcept;
   bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
                              bool measured) const noexcept;
   bool is_as_measured(const ContactSurface& surface) const noexcept;
@@ -160,6 +164,8 @@ class ContactProblem {
   void limit_feedback(bool converged, bool grows) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
+
+  static constexpr double least_part = 0.1;  // of a force: where less of it is does not count
 
   ContactParameters parameters_;
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started

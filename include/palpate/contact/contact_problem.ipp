@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -307,22 +308,29 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
   return levels_.deepest() > 0.0 ? levels_.deepest() / std::max(levels_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
+/// Calls `visit(row, point)` for the points that a tool presses and does not hold.
+template <class Visit>
+void ContactProblem::for_each_pressing(std::size_t t, Visit&& visit) const noexcept {
+  for (int i = 0; i < rows_.count(); ++i) {
+    const Candidate& c = rows_.candidate(i);
+    if (c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0) visit(i, c);
+  }
+}
+
 PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std::size_t t) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   if (!surface.has_shell()) return 0.0;
   double all = 0.0, on_rim = 0.0;
-  for (int i = 0; i < rows_.count(); ++i) {
-    const Contact& c = rows_.contacts()[at(i)];
-    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+  for_each_pressing(t, [&](int row, const Candidate& point) {
+    const Contact& c = rows_.contacts()[at(row)];
     all += c.force;
     double beside = 1.0;  // weights of vertices that are not on the rim
     for (std::size_t a = 0; a < 3; ++a)
       if (c.weights[a] > 0.0 && surface.goes_on(c.vertices[a], c.normal)) beside -= c.weights[a];
-    const Candidate& point = rows_.candidate(i);
     const double length = surface.facet_length(point.triangle),
-                 spacing = rows_.has_area(i) ? std::sqrt(point.area) : 0.0;
+                 spacing = rows_.has_area(row) ? std::sqrt(point.area) : 0.0;
     if (beside < 1.0 && beside * length <= std::max(1e-9 * length, 0.5 * spacing)) on_rim += c.force;
-  }
+  });
   return all > 0.0 ? on_rim / all : 0.0;
 }
 
@@ -338,12 +346,10 @@ PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTo
 
 PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue, std::size_t t) noexcept {
   double all = 0.0, behind = 0.0;
-  for (int i = 0; i < rows_.count(); ++i) {
-    const Candidate& c = rows_.candidate(i);
-    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+  for_each_pressing(t, [&](int, const Candidate& c) {
     all += c.force;
     if (!candidates_.faces_sphere(tissue, displacement_, c)) behind += c.force;
-  }
+  });
   return all > 0.0 ? behind / all : 0.0;
 }
 
@@ -408,39 +414,78 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
+/// Whether the elements across a thin body make it too stiff in bending for more than a tenth of the force. Their error
+/// counts as far as the body gives way as a whole: by what is left of the depth without the dent of the tool, that of
+/// Hertz for a sphere, for other tools about that of a disc with the area of the points. O(rows).
+PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& surface, std::size_t t,
+                                                          const ContactTool& tool) const noexcept {
+  double all = 0.0, error = 0.0, area = 0.0, modulus = 0.0;
+  for_each_pressing(t, [&](int row, const Candidate& c) {
+    all += c.force;
+    area += c.area;
+    if (const double own = rows_.bending_error(row); own > 0.0) {
+      error += own * c.force;
+      modulus = surface.material(c.triangle).modulus;
+    }
+  });
+  if (!(error > flagged_error * all && modulus > 0.0)) return false;
+  const double depth = indentation(t, tool), force = tool.force.norm();
+  const bool is_sphere = tool.half_length == 0.0 && tool.hull == nullptr;
+  constexpr double disc = 1.6;  // between a sphere, 4/3, and a flat stamp, 2
+  const double dent = is_sphere ? std::cbrt(std::pow(0.75 * force / modulus, 2) / tool.radius)
+                                : force / (disc * modulus * std::sqrt(area * std::numbers::inv_pi));
+  return error * (depth - dent) > flagged_error * all * depth;
+}
+
+/// Whether a part of the force is on facets at a sharp edge, longer than `longest`, and that edge nearer to it than the
+/// radius of the contact.
+PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, std::size_t t, double longest,
+                                                 double contact_radius) const noexcept {
+  double all = 0.0, at_edge = 0.0, moment = 0.0;  // of the force about the edge
+  for_each_pressing(t, [&](int row, const Candidate& c) {
+    all += c.force;
+    const double edge = rows_.on_edge(row);
+    if (edge == 0.0) return;
+    const double length = surface.facet_length(c.triangle);
+    if (length <= longest) return;
+    at_edge += c.force;
+    moment += c.force * (1.0 - edge) * length;
+  });
+  return at_edge > least_part * all && moment < contact_radius * at_edge;
+}
+
 /// Whether a part of the force is at points where the body is no half-space, or that have only the compliance of the
 /// mesh, on facets that are too long: for the dent of the tool, or, where no error was measured, for the radius of the
-/// contact; or at points that are too far apart for the thickness of the body; or at one or two points, on facets so
-/// long that they have no more; or, in a deep press at large strain, on facets that are long for the tool: they do not
-/// show how the surface stretches.
+/// contact; or there at a sharp edge; or at points that are too far apart for the thickness of the body; or at one or
+/// two points, on facets so long that they have no more; or, in a deep press at large strain, on facets that are long
+/// for the tool: they do not show how the surface stretches.
 PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool, bool measured) const noexcept {
-  constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125, most = 0.1;
+  constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125;
   constexpr double deep = 0.4, long_for_deep = 0.65;  // radii
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
   constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
   double longest = tool.radius / coarse;
   const bool is_deep = surface.has_large_strain() && depth > deep * tool.radius;
   const double shown = is_deep ? deep * tool.radius : depth;  // a deeper dent does not allow longer facets
-  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * shown));
+  const double contact_radius = std::sqrt(tool.radius * shown);
+  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * contact_radius);
   const double longest_stretched = is_deep ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
   int points = 0;  // with an area
-  for (int i = 0; i < rows_.count(); ++i) {
-    const Candidate& c = rows_.candidate(i);
-    if (c.tool != static_cast<int>(t) || c.grasped || !(c.force > 0.0)) continue;
+  for_each_pressing(t, [&](int row, const Candidate& c) {
     all += c.force;
-    points += rows_.has_area(i);
+    points += rows_.has_area(row);
     const auto is_longer = [fourth_power = surface.double_area_squared(c.triangle)](double length) {
       return fourth_power > length * length * length * length;
     };
-    if (rows_.is_on_thin_body(i) || is_longer(longest_stretched) || (!rows_.is_known(i) && is_longer(longest)))
+    if (rows_.is_on_thin_body(row) || is_longer(longest_stretched) || (!rows_.is_known(row) && is_longer(longest)))
       on_coarse += c.force;
     else if (is_longer(very_long * tool.radius))
       on_very_long += c.force;
-  }
+  });
   if (points == 1 || points == 2) on_coarse += on_very_long;
-  return on_coarse > most * all;
+  return on_coarse > least_part * all || presses_edge(surface, t, longest, contact_radius);
 }
 
 /// The part of the force by which a contact of few points may be wrong: measured with spheres on meshes whose nodes
@@ -548,7 +593,8 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
   }
   if (presses_beside_pad(t)) error.parts.mesh = infinity;
   if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
-  coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured);
+  coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured) ||
+               (!measured && bends_coarse_elements(surface, t, tool));
   if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
   error.parts.merged = scale_of_force(t, force) * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));

@@ -111,6 +111,8 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     p.root += weight * own.root;
     p.poisson_ratio += weight * own.poisson_ratio;
     p.length += weight * own.length;
+    p.on_edge += weight * own.on_edge;
+    p.bending_error += weight * own.bending_error;
     p.is_disturbed = p.is_disturbed || own.is_disturbed;
   }
   p.is_fixed = p.root == 0.0;

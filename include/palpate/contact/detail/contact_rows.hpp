@@ -48,6 +48,12 @@ class ContactRows {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
     return (point.is_known() || point.is_fixed) && !point.is_disturbed;
   }
+  /// HalfSpacePoint::on_edge of the point of a row.
+  double on_edge(int row) const noexcept { return compliance_.half_space_point(candidate(row).slot).on_edge; }
+  /// How much too stiff in bending the body at the point of a row is, relative.
+  double bending_error(int row) const noexcept {
+    return compliance_.half_space_point(candidate(row).slot).bending_error;
+  }
   /// Whether the body at the point of a row is too thin: for facets that are longer, which is why the point has no
   /// half-space, or for the area that the point stands for, when what is below takes most of its own compliance away.
   /// After `build`.

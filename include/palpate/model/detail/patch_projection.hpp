@@ -131,12 +131,18 @@ class PatchProjection {
   /// above a support that is too near, and when there is no solution: a pivot that is not positive, or a residual above
   /// 1e-8.
   void solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries, HalfSpaceMarks& marks);
+  /// Of the last patch: depth of the surface on the other side of the body, where that is free, in edges of elements.
+  /// Infinite where it is farther away than the patch.
+  double thickness() const noexcept { return thickness_; }
 
  private:
   void assemble(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release_cut_domains(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release(int domain, double bulk, const Vector3& mean_stress, const HalfSpaceField& field);
   double support_below(NodeId middle, const Vector3& normal) const noexcept;
+  double free_surface_below(NodeId middle, const Vector3& normal) const noexcept;
+  template <class Is>
+  double nearest_below(NodeId middle, const Vector3& normal, Is&& is_searched) const noexcept;
   bool solve_dense();
   const Matrix3& boundary_value(NodeId node, const HalfSpaceField& field);
 
@@ -148,6 +154,7 @@ class PatchProjection {
   VectorX b_, x_;
   std::vector<int> known_;  // per node, the patch for which its boundary value is known, and where that is
   std::vector<int> value_of_;
+  double thickness_ = infinity;
   std::vector<Matrix3> values_;
   int number_ = 0;
 };

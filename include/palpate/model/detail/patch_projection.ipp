@@ -285,23 +285,39 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
          good;
 }
 
-/// Depth of the nearest node below the middle of the patch that is fixed along the normal, in lengths between nodes
-/// (half an edge of a quadratic element); infinite where there is none. What such nodes do to a dent changes within a
-/// facet if they are near, and then the compliance that remains without the half-space is not smooth: its sum with the
-/// half-space may not even be positive definite. Nodes up to about a length aside count too: in an unstructured mesh
-/// none may be straight below.
-PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
+/// Depth of the nearest node for which `is_searched` holds below the middle of the patch, in lengths between nodes
+/// (half an edge of a quadratic element); infinite where there is none. Nodes up to about a length aside count too: in
+/// an unstructured mesh none may be straight below.
+template <class Is>
+double PatchProjection::nearest_below(NodeId middle, const Vector3& normal, Is&& is_searched) const noexcept {
   constexpr double beside = 1.2, surface = 0.05;  // lengths between nodes
   const double length = source_.boundary.length(middle);
   double nearest = infinity;
   for (const NodeId n : patch_.nodes()) {
-    if (!detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)])) continue;
+    if (!is_searched(n)) continue;
     const Vector3 path = source_.position(n) - source_.position(middle);
     const double depth = -path.dot(normal);
     if (depth > surface * length && (path + depth * normal).norm() < beside * length)
       nearest = std::min(nearest, depth);
   }
   return nearest / length;
+}
+
+/// Of the nodes that are fixed along the normal. What such nodes do to a dent changes within a facet if they are near,
+/// and then the compliance that remains without the half-space is not smooth: its sum with the half-space may not even
+/// be positive definite.
+PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
+  return nearest_below(middle, normal, [&](NodeId n) {
+    return detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)]);
+  });
+}
+
+PALPATE_INLINE double PatchProjection::free_surface_below(NodeId middle, const Vector3& normal) const noexcept {
+  constexpr double opposite = -0.5;
+  return nearest_below(middle, normal, [&](NodeId n) {
+    return source_.boundary.is_on_boundary(n) && source_.constrained[static_cast<std::size_t>(n)] == 0 &&
+           source_.boundary.normal(n).dot(normal) < opposite;
+  });
 }
 
 PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries,
@@ -314,6 +330,7 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   constexpr double near = 1.3, too_near = 0.7;  // edges of elements, lengths between nodes
   const double support = support_below(middle, normal);
   if (support < near * source_.mesh.element.order) marks.set(HalfSpaceMark::near_support);
+  thickness_ = free_surface_below(middle, normal) / source_.mesh.element.order;
   if (support < too_near) return marks.set(HalfSpaceMark::thin);
   const HalfSpaceField field(stiffness.shear_modulus, stiffness.poisson_ratio, normal);
   load_.compute(patch_, field, normal, right_);
