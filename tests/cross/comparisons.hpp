@@ -24,8 +24,10 @@ Finding at(const char* oracle, const Run& run, int tick, int tool, double found,
            palpate::Status excuse);
 
 /// Findings where forces differ by more than `tolerance` of the largest force; with 0 where bits, flags or bounds
-/// differ, and then no flag excuses it. Ends at the first silent one.
-std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance);
+/// differ, and then no flag excuses it. Ends at the first silent one. The bounds that the runs state for their points
+/// count up to `most_of_points` of the largest force.
+std::vector<Finding> compare(const char* name, const Scene& scene, const Run& run, const Run& other, double tolerance,
+                             double most_of_points = 0.0);
 /// The same only at the end of the second phase; `change` is that of the other run.
 std::vector<Finding> compare_at_rest(const char* name, const Scene& scene, const Run& run, const Run& other,
                                      double tolerance, const Change& change = {});

@@ -88,10 +88,21 @@ TEST_CASE("a comparison sees what differs, and what a flag reports", "[cross]") 
   for (int i = -2; i <= 2; ++i) tick_of(twisted, k + i).torque = Vector3(run.peak * scene.tools[0].radius, 0.0, 0.0);
   REQUIRE(compare("same", scene, run, twisted, 0.02).size() == 1);
   CHECK(compare("same", scene, run, twisted, 0.02).front().of_torques);
+  for (int i = -2; i <= 2; ++i) tick_of(twisted, k + i).of_points = run.peak;
+  CHECK(compare("same", scene, run, twisted, 0.02, 2.0).empty());
+  CHECK(compare("same", scene, run, twisted, 0.02, 0.05).size() == 1);
   for (int i = -2; i <= 2; ++i) tick_of(twisted, k + i).force *= 1.001;
   CHECK(compare("same", scene, run, twisted, 0.02).front().of_torques);
   other.refused = "too_large";
   CHECK_FALSE(compare("same", scene, run, other, 0.02).front().flagged);
+  other.refused = "ill_conditioned";
+  CHECK(compare("same", scene, run, other, 0.02).size() == 1);
+  Scene uneven = scene;
+  uneven.contrast = 1e6, uneven.poisson_ratio = 0.4999;  // digits for one factorisation, not for another
+  CHECK(compare("same", uneven, run, other, 0.02).empty());
+  Run refused = other;
+  refused.refused = "not_positive_definite";
+  CHECK(compare("same", scene, refused, other, 0.02).empty());
 }
 
 TEST_CASE("the laws of physics see a force that is wrong, unless it is flagged", "[cross]") {

@@ -204,6 +204,7 @@ class Player {
       r.rendered = back(forces[t].force()) / (s * s);
       r.status = forces[t].status;
       r.bound = servo_->force_error(t).bound / (s * s);
+      r.of_points = servo_->force_error(t).parts.merged / (s * s);
       r.depth = depth_of(scene_, t, tick);
       r.finite =
           force.allFinite() && torque.allFinite() && forces[t].force().allFinite() && forces[t].torque().allFinite();

@@ -101,3 +101,34 @@ TEST_CASE("a support on the surface stiffens only presses close beside it", "[ha
   CAPTURE(radius, beside, cells, p.force / hertz);
   CHECK(std::abs(p.force / hertz - 1.0) < 0.15);  // few points; up to six times Hertz before
 }
+
+TEST_CASE("a flat tool on a touched support has one torque, whatever the rounding", "[haptic][contact]") {
+  // The same scene at other places: rounding differs, and points of a support do not yield.
+  const double radius = 2e-3, half_length = 6e-3, depth = 1e-3;
+  const bool is_plate = GENERATE(false, true);
+  const auto torque_at = [&](const Vector3& origin) {
+    Mesh<Tet4> mesh = box_tet4(Vector3(0.048, 0.048, 0.012), {8, 8, 2}, BoxSplit::six);
+    for (Vector3& x : mesh.positions) x += origin;
+    Scene scene;
+    scene.fix("z1").touch("z1");
+    Organ organ(copy_mesh<Smoothed<Tet4>>(mesh), scene, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
+    ServoOptions options;
+    options.force_limits = test::open_gate();
+    const ToolList tool = is_plate ? ToolList(ConvexTool::box(Vector3(0.012, 0.008, 0.004), 1e-3))
+                                   : ToolList(CapsuleTool(radius, half_length));
+    HapticServo servo(organ, tool, options);
+    for (int k = 0; k < 120; ++k) {
+      ToolState s;
+      s.position = origin + Vector3(0.0217, 0.0231, 0.012 + radius - depth * std::min(1.0, k / 100.0));
+      if (!is_plate) s.orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};  // along the x-axis
+      s.time = 1e-3 * k;
+      servo.tick(s);
+    }
+    CHECK(servo.contact_force()[2] > 0.4);
+    return Vector3(servo.contact_torque() / (servo.contact_force()[2] * half_length));
+  };
+  const Vector3 first = torque_at(Vector3::Zero());
+  CHECK(first.norm() < 0.1);
+  for (const Vector3& origin : {Vector3(0.1, -0.2, 0.3), Vector3(-0.0137, 0.0423, 1.0)})
+    CHECK((torque_at(origin) - first).norm() < 0.01);
+}

@@ -138,7 +138,7 @@ class ContactRows {
   RowCompliance::Coupling coupling_of(const ContactTool& tool) const noexcept {
     return {tool.compliance + floor_, tool.rotational_compliance};
   }
-  void store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept;
+  void store_compliance(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
   void build_row(const ContactTool& tool, int i) noexcept;
   /// Displacement of the point in a row per force on that in another, whose slot is not larger [m/N]. `workspace`: for
   /// two rows at one point.
