@@ -10,17 +10,17 @@ using test::pad_height;
 namespace {
 
 /// How a press on one place ended.
-struct Press {
+struct FineTipPress {
   int reacquired = 0;   // ticks
   int lost = 0;         // ticks without force after the first contact
   double change = 0.0;  // of the force while the device rests, relative
 };
 
 /// Presses a sphere down to `depth` in 300 ticks at (x, y), and waits there.
-Press press(Pad& pad, double radius, double depth, double x, double y) {
+FineTipPress press_fine_tip(Pad& pad, double radius, double depth, double x, double y) {
   HapticServo servo(pad, SphereTool{.radius = radius});
   ToolState state;
-  Press result;
+  FineTipPress result;
   bool touched = false;
   double least = infinity, most = 0.0;
   for (int i = 0; i < 600; ++i) {
@@ -49,7 +49,7 @@ TEST_CASE("a fine tip does not lose the tissue: radii of 1/20 to 1/5 of a facet"
       for (int j = 0; j < 3; ++j) {
         const double x = 0.008 + 0.0031 * i, y = 0.009 + 0.0047 * j;
         CAPTURE(radius, depth, x, y);
-        const Press p = press(pad, radius, depth, x, y);
+        const FineTipPress p = press_fine_tip(pad, radius, depth, x, y);
         CHECK(p.reacquired == 0);
         CHECK(p.lost == 0);
         CHECK(p.change <= (depth < 8.0 * radius ? 0.06 : 0.07));  // the deepest tips take longer to settle
