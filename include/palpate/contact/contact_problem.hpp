@@ -143,7 +143,7 @@ class ContactProblem {
   template <class Visit>
   void for_each_pressing(std::size_t t, Visit&& visit) const noexcept;
   bool bends_coarse_elements(const ContactSurface& surface, std::size_t t, const ContactTool& tool) const noexcept;
-  bool presses_edge(const ContactSurface& surface, std::size_t t, double longest, double contact_radius) const noexcept;
+  bool presses_edge(const ContactSurface& surface, std::size_t t, double longest) const noexcept;
   bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
                              bool measured) const noexcept;
   bool is_as_measured(const ContactSurface& surface) const noexcept;

@@ -437,21 +437,16 @@ PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& 
   return error * (depth - dent) > flagged_error * all * depth;
 }
 
-/// Whether a part of the force is on facets at a sharp edge, longer than `longest`, and that edge nearer to it than the
-/// radius of the contact.
-PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, std::size_t t, double longest,
-                                                 double contact_radius) const noexcept {
-  double all = 0.0, at_edge = 0.0, moment = 0.0;  // of the force about the edge
+/// Whether the force is too near to a sharp edge, on facets longer than `longest`.
+PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, std::size_t t,
+                                                 double longest) const noexcept {
+  double all = 0.0, at_edge = 0.0;
   for_each_pressing(t, [&](int row, const Candidate& c) {
     all += c.force;
-    const double edge = rows_.on_edge(row);
-    if (edge == 0.0) return;
-    const double length = surface.facet_length(c.triangle);
-    if (length <= longest) return;
-    at_edge += c.force;
-    moment += c.force * (1.0 - edge) * length;
+    if (const double edge = rows_.on_edge(row); edge > 0.0 && surface.facet_length(c.triangle) > longest)
+      at_edge += edge * c.force;
   });
-  return at_edge > least_part * all && moment < contact_radius * at_edge;
+  return all > 0.0 && at_edge > all;
 }
 
 /// Whether a part of the force is at points where the body is no half-space, or that have only the compliance of the
@@ -468,8 +463,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   double longest = tool.radius / coarse;
   const bool is_deep = surface.has_large_strain() && depth > deep * tool.radius;
   const double shown = is_deep ? deep * tool.radius : depth;  // a deeper dent does not allow longer facets
-  const double contact_radius = std::sqrt(tool.radius * shown);
-  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * contact_radius);
+  if (!measured && tool.hull == nullptr) longest = std::min(longest, long_facet * std::sqrt(tool.radius * shown));
   const double longest_stretched = is_deep ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
   int points = 0;  // with an area
@@ -485,7 +479,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
       on_very_long += c.force;
   });
   if (points == 1 || points == 2) on_coarse += on_very_long;
-  return on_coarse > least_part * all || presses_edge(surface, t, longest, contact_radius);
+  return on_coarse > least_part * all || presses_edge(surface, t, longest);
 }
 
 /// The part of the force by which a contact of few points may be wrong: measured with spheres on meshes whose nodes

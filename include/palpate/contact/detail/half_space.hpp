@@ -16,7 +16,7 @@ struct HalfSpacePoint {
   double root = 0.0;                   ///< 1 / sqrt(4 pi mu) [sqrt(m^2/N)], see `root_of`
   double poisson_ratio = 0.0;          ///< nu
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
-  double on_edge = 0.0;                ///< 1 on a sharp edge of the body, between it and other vertices linear
+  double on_edge = 0.0;                ///< on a sharp edge: above 1 is too near to it. Between vertices linear
   double bending_error = 0.0;          ///< of the elements across a thin body: too stiff by that, relative
   int body = 0;                        ///< points of different bodies have nothing of each other
   bool is_disturbed = false;           ///< the body near it differs from a half-space: an edge, a support, another
