@@ -85,6 +85,21 @@ TEST_CASE("a thin lobe that is too stiff in bending for its elements is flagged"
   CHECK(wrong >= 2);
 }
 
+TEST_CASE("layers of elements count, not the length of their facets or a support along the other side",
+          "[haptic][contact]") {
+  const double truth = bend_lobe<Tet10>(box_tet10(lobe_size, {14, 8, 3}), 0.3).force;
+  const auto fine = box_tet4(lobe_size, {28, 16, 1}, BoxSplit::six);  // facets of a quarter of the thickness
+  check_bending("Tet4", 1, bend_lobe<Tet4>(fine, 0.3), truth);
+  Scene scene;
+  scene.fix("x0").prescribe("z0", Components{std::nullopt, 0.0, std::nullopt});
+  const auto on_rail = [&]<class E>(const Mesh<E>& mesh) {
+    return press_along<E>(mesh, scene, 0.3, Vector3(0.0301, 0.0122, 0.006), -Vector3::UnitZ(), 2e-3);
+  };
+  const double truth_on_rail = on_rail(box_tet10(lobe_size, {14, 8, 3})).force;
+  check_bending("Tet4", 1, on_rail(box_tet4(lobe_size, {7, 4, 1})), truth_on_rail);
+  check_bending("Tet4", 2, on_rail(box_tet4(lobe_size, {14, 8, 2})), truth_on_rail);
+}
+
 TEST_CASE("a lobe with enough elements across it is right and not flagged", "[haptic][contact]") {
   const double truth = bend_lobe<Tet10>(box_tet10(lobe_size, {14, 8, 3}), 0.45).force;
   const BendingPress p = bend_lobe<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(box_tet4(lobe_size, {28, 16, 4})), 0.45);

@@ -105,12 +105,13 @@ TEST_CASE("a support on the surface stiffens only presses close beside it", "[ha
 TEST_CASE("a flat tool on a touched support has one torque, whatever the rounding", "[haptic][contact]") {
   // The same scene at other places: rounding differs, and points of a support do not yield.
   const double radius = 2e-3, half_length = 6e-3, depth = 1e-3;
-  const bool is_plate = GENERATE(false, true);
+  const bool is_plate = GENERATE(false, true), may_glide = GENERATE(false, true);
   const auto torque_at = [&](const Vector3& origin) {
     Mesh<Tet4> mesh = box_tet4(Vector3(0.048, 0.048, 0.012), {8, 8, 2}, BoxSplit::six);
     for (Vector3& x : mesh.positions) x += origin;
     Scene scene;
-    scene.fix("z1").touch("z1");
+    scene.fix("z0").touch("z1").prescribe(
+        "z1", may_glide ? Components{std::nullopt, std::nullopt, 0.0} : Components{0.0, 0.0, 0.0});
     Organ organ(copy_mesh<Smoothed<Tet4>>(mesh), scene, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
     ServoOptions options;
     options.force_limits = test::open_gate();
@@ -128,7 +129,7 @@ TEST_CASE("a flat tool on a touched support has one torque, whatever the roundin
     return Vector3(servo.contact_torque() / (servo.contact_force()[2] * half_length));
   };
   const Vector3 first = torque_at(Vector3::Zero());
-  CHECK(first.norm() < 0.1);
+  if (is_plate || !may_glide) CHECK(first.norm() < 0.1);  // a capsule beside the lines of the mesh glides a little
   for (const Vector3& origin : {Vector3(0.1, -0.2, 0.3), Vector3(-0.0137, 0.0423, 1.0)})
     CHECK((torque_at(origin) - first).norm() < 0.01);
 }

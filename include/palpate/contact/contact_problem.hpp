@@ -106,7 +106,7 @@ class ContactProblem {
   static constexpr double largest_feedback = 0.75;     // of the normals of two linearisations
   static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
-  static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest push
+  static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest dent
   static constexpr double rounding = 1e-12;            // the same, relative to the radius: a tool that just touches
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }

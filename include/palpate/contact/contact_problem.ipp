@@ -437,16 +437,16 @@ PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& 
   return error * (depth - dent) > flagged_error * all * depth;
 }
 
-/// Whether the force is too near to a sharp edge, on facets longer than `longest`.
+/// Whether a part of the force is too near to a sharp edge, on facets longer than `longest`.
 PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, std::size_t t,
                                                  double longest) const noexcept {
+  constexpr double part = 0.3;
   double all = 0.0, at_edge = 0.0;
   for_each_pressing(t, [&](int row, const Candidate& c) {
     all += c.force;
-    if (const double edge = rows_.on_edge(row); edge > 0.0 && surface.facet_length(c.triangle) > longest)
-      at_edge += edge * c.force;
+    if (rows_.on_edge(row) > 1.0 && surface.facet_length(c.triangle) > longest) at_edge += c.force;
   });
-  return all > 0.0 && at_edge > all;
+  return at_edge > part * all;
 }
 
 /// Whether a part of the force is at points where the body is no half-space, or that have only the compliance of the
@@ -479,7 +479,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
       on_very_long += c.force;
   });
   if (points == 1 || points == 2) on_coarse += on_very_long;
-  return on_coarse > least_part * all || presses_edge(surface, t, longest);
+  return on_coarse > least_part * all || presses_edge(surface, t, tool.hull == nullptr ? longest : 0.0);
 }
 
 /// The part of the force by which a contact of few points may be wrong: measured with spheres on meshes whose nodes
@@ -835,7 +835,9 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   violated_count_ = 0;
   levels_.begin_round();
   proxies_.look_ahead(tools, floor_);
-  const double allowed = built > 0 ? violation * rows_.deepest_push() : 0.0;
+  // Not of the push: on a support nearly all of that is in the coupling, and points without rows would remain, chosen
+  // by rounding.
+  const double allowed = built > 0 ? violation * rows_.deepest_dent() : 0.0;
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
   for (Candidates::Near& near : candidates_.within(reaches, tools)) {

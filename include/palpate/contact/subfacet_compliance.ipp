@@ -104,7 +104,7 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     const double weight = sample.weights[a];
     if (weight == 0.0) continue;
     const HalfSpacePoint& own = vertex(sample.vertices[a]);
-    if (!own.is_known() && !own.is_fixed) return {.is_disturbed = own.is_disturbed};
+    if (!own.is_known() && !own.is_fixed) return {.bending_error = own.bending_error, .is_disturbed = own.is_disturbed};
     if (!own.is_fixed) free += weight;
     p.body = own.body;
     p.position += weight * own.position;

@@ -104,6 +104,9 @@ class ContactRows {
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
 
+  /// Displacement of the tissue along the normal, at the row where it is largest [m]: after `apply`.
+  double deepest_dent() const noexcept;
+
   /// Writes the solution to rows, vertices and tools. Candidates get their forces; they stay where they are.
   void apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,
              SurfaceDisplacement& displacement) noexcept;
@@ -138,7 +141,7 @@ class ContactRows {
   RowCompliance::Coupling coupling_of(const ContactTool& tool) const noexcept {
     return {tool.compliance + floor_, tool.rotational_compliance};
   }
-  void store_compliance(const TissueView& tissue, const Candidates& points, const ContactTool& tool, int i) noexcept;
+  void store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept;
   void build_row(const ContactTool& tool, int i) noexcept;
   /// Displacement of the point in a row per force on that in another, whose slot is not larger [m/N]. `workspace`: for
   /// two rows at one point.

@@ -61,27 +61,19 @@ PALPATE_INLINE const Matrix3& ContactRows::with_self_compliance(const TissueView
   return workspace;
 }
 
-/// Stores the blocks of row i, unless they are known from the last linearisation. A point yields at least a thousandth
-/// of what the coupling of its tool does: without that many distributions of forces on points that do not yield have
-/// the same sum, rounding chose one, and with it the torque. The force changes by a thousandth at most.
-PALPATE_INLINE void ContactRows::store_compliance(const TissueView& tissue, const Candidates& points,
-                                                  const ContactTool& tool, int i) noexcept {
-  constexpr double least_part = 1e-3;
+/// Stores the blocks of row i, unless they are known from the last linearisation.
+PALPATE_INLINE void ContactRows::store_compliance(const TissueView& tissue, const Candidates& points, int i) noexcept {
   const int p = candidate_[at(i)]->slot;
   const RowCompliance::Key key{compliance_.version(p), candidate_[at(i)]->area};
   if (stored_.knows(i, key)) return;
   remaining_[at(i)] = 1.0;
   stored_.begin_row(i, key);
   Matrix3 workspace;
-  for (int j = 0; j < i; ++j)
+  for (int j = 0; j <= i; ++j)
     if (p >= candidate_[at(j)]->slot)
       stored_.set(i, j, between(tissue, points, i, j, workspace));
     else
       stored_.set(i, j, between(tissue, points, j, i, workspace).transpose());
-  Matrix3 own = between(tissue, points, i, i, workspace);
-  if (const double missing = least_part * (tool.compliance + floor_) - own.trace() / 3.0; missing > 0.0)
-    own.diagonal().array() += missing;
-  stored_.set(i, i, own);
 }
 
 /// Row and column i of W, of rows up to i.
@@ -214,7 +206,7 @@ PALPATE_INLINE void ContactRows::build(const TissueView& tissue, const Candidate
     problem_.bilateral[at(i)] = ci.grasped;
     reach(tool, *candidate_[at(i)], ci);
     problem_.b[at(i)] = free_gap_[at(i)] = ci.normal.dot(tool.target - ci.rest) + ci.offset;
-    store_compliance(tissue, points, tool, i);
+    store_compliance(tissue, points, i);
     stored_.set_tool(i, ci.tool, ci.arm);
     stored_.set_axis(i, RowCompliance::normal, ci.normal);
     if (friction_.acts()) set_friction(tool, i);
@@ -250,6 +242,12 @@ PALPATE_INLINE double ContactRows::largest_force_scale(std::span<const ContactTo
 PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
   double deepest = 0.0;
   for (int i = 0; i < count_; ++i) deepest = std::max(deepest, -problem_.b[at(i)]);
+  return deepest;
+}
+
+PALPATE_INLINE double ContactRows::deepest_dent() const noexcept {
+  double deepest = 0.0;
+  for (int i = 0; i < count_; ++i) deepest = std::max(deepest, std::abs(rows_[at(i)].normal.dot(moved_[i])));
   return deepest;
 }
 

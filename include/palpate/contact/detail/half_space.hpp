@@ -19,7 +19,7 @@ struct HalfSpacePoint {
   double on_edge = 0.0;                ///< on a sharp edge: above 1 is too near to it. Between vertices linear
   double bending_error = 0.0;          ///< of the elements across a thin body: too stiff by that, relative
   int body = 0;                        ///< points of different bodies have nothing of each other
-  bool is_disturbed = false;           ///< the body near it differs from a half-space: an edge, a support, another
+  bool is_disturbed = false;           ///< too different from a half-space for its elements: edge, support, another
                                        ///< material or a cut
   bool is_fixed = false;               ///< its displacement along the normal is prescribed: `root` is 0
 

@@ -23,8 +23,12 @@ class NodePatch {
   void find(NodeId middle, const Vector3& normal);
 
   NodeId middle() const noexcept { return middle_; }
-  /// All nodes of the elements.
+  /// All nodes of the elements, by layers.
   std::span<const NodeId> nodes() const noexcept { return nodes_; }
+  /// Those of the first layers of elements.
+  std::span<const NodeId> nodes(int layers) const noexcept {
+    return std::span(nodes_).first(layer_end_[static_cast<std::size_t>(layers)]);
+  }
   std::span<const NodeId> free() const noexcept { return free_; }
   /// Number of a node among the free ones, or -1.
   int place(NodeId node) const noexcept { return place_[static_cast<std::size_t>(node)]; }
@@ -44,6 +48,7 @@ class NodePatch {
   std::vector<int> element_seen_, node_seen_, side_seen_;  // the search that found it last
   int search_ = 0;
   std::vector<NodeId> nodes_, side_, free_;
+  std::vector<std::size_t> layer_end_;
   std::vector<int> place_;
   bool cut_ = false;
 };
@@ -131,18 +136,18 @@ class PatchProjection {
   /// above a support that is too near, and when there is no solution: a pivot that is not positive, or a residual above
   /// 1e-8.
   void solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries, HalfSpaceMarks& marks);
-  /// Of the last patch: depth of the surface on the other side of the body, where that is free, in edges of elements.
-  /// Infinite where it is farther away than the patch.
-  double thickness() const noexcept { return thickness_; }
+  /// Of the last patch: how many elements are between its middle and the surface on the other side of the body, where
+  /// that is free; 0 where that is farther away than the patch.
+  int layers_across() const noexcept { return layers_across_; }
 
  private:
   void assemble(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release_cut_domains(const UniformStiffness& stiffness, const HalfSpaceField& field);
   void release(int domain, double bulk, const Vector3& mean_stress, const HalfSpaceField& field);
   double support_below(NodeId middle, const Vector3& normal) const noexcept;
-  double free_surface_below(NodeId middle, const Vector3& normal) const noexcept;
-  template <class Is>
-  double nearest_below(NodeId middle, const Vector3& normal, Is&& is_searched) const noexcept;
+  double depth_below(NodeId node, NodeId middle, const Vector3& normal) const noexcept;
+  bool is_free_side_below(NodeId node, NodeId middle, const Vector3& normal) const noexcept;
+  int count_layers(NodeId middle, const Vector3& normal) const noexcept;
   bool solve_dense();
   const Matrix3& boundary_value(NodeId node, const HalfSpaceField& field);
 
@@ -154,7 +159,7 @@ class PatchProjection {
   VectorX b_, x_;
   std::vector<int> known_;  // per node, the patch for which its boundary value is known, and where that is
   std::vector<int> value_of_;
-  double thickness_ = infinity;
+  int layers_across_ = 0;
   std::vector<Matrix3> values_;
   int number_ = 0;
 };

@@ -28,8 +28,9 @@ PALPATE_INLINE bool NodePatch::faces_my_way(int triangle) const noexcept {
 PALPATE_INLINE void NodePatch::collect_elements() {
   nodes_.assign(1, middle_);
   node_seen_[static_cast<std::size_t>(middle_)] = search_;
+  layer_end_.assign(1, 1);
   std::size_t next = 0;
-  for (int layer = 0; layer < source_.layers; ++layer)
+  for (int layer = 0; layer < source_.layers; ++layer) {
     for (const std::size_t end = nodes_.size(); next < end; ++next)
       for (const NodeId e : source_.around.of(nodes_[next])) {
         if (std::exchange(element_seen_[static_cast<std::size_t>(e)], search_) == search_) continue;
@@ -38,6 +39,8 @@ PALPATE_INLINE void NodePatch::collect_elements() {
           if (std::exchange(node_seen_[static_cast<std::size_t>(n)], search_) != search_) nodes_.push_back(n);
         }
       }
+    layer_end_.push_back(nodes_.size());
+  }
 }
 
 PALPATE_INLINE void NodePatch::collect_side() {
@@ -285,39 +288,42 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
          good;
 }
 
-/// Depth of the nearest node for which `is_searched` holds below the middle of the patch, in lengths between nodes
-/// (half an edge of a quadratic element); infinite where there is none. Nodes up to about a length aside count too: in
-/// an unstructured mesh none may be straight below.
-template <class Is>
-double PatchProjection::nearest_below(NodeId middle, const Vector3& normal, Is&& is_searched) const noexcept {
+/// Depth of a node below the middle of the patch; infinite where it is above, or more than about a length aside: in an
+/// unstructured mesh no node may be straight below.
+PALPATE_INLINE double PatchProjection::depth_below(NodeId node, NodeId middle, const Vector3& normal) const noexcept {
   constexpr double beside = 1.2, surface = 0.05;  // lengths between nodes
   const double length = source_.boundary.length(middle);
-  double nearest = infinity;
-  for (const NodeId n : patch_.nodes()) {
-    if (!is_searched(n)) continue;
-    const Vector3 path = source_.position(n) - source_.position(middle);
-    const double depth = -path.dot(normal);
-    if (depth > surface * length && (path + depth * normal).norm() < beside * length)
-      nearest = std::min(nearest, depth);
-  }
-  return nearest / length;
+  const Vector3 path = source_.position(node) - source_.position(middle);
+  const double depth = -path.dot(normal);
+  return depth > surface * length && (path + depth * normal).norm() < beside * length ? depth : infinity;
 }
 
-/// Of the nodes that are fixed along the normal. What such nodes do to a dent changes within a facet if they are near,
-/// and then the compliance that remains without the half-space is not smooth: its sum with the half-space may not even
-/// be positive definite.
+/// Depth of the nearest node below the middle of the patch that is fixed along the normal, in lengths between nodes
+/// (half an edge of a quadratic element); infinite where there is none. What such nodes do to a dent changes within a
+/// facet if they are near, and then the compliance that remains without the half-space is not smooth: its sum with the
+/// half-space may not even be positive definite.
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
-  return nearest_below(middle, normal, [&](NodeId n) {
-    return detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)]);
-  });
+  double nearest = infinity;
+  for (const NodeId n : patch_.nodes())
+    if (detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)]))
+      nearest = std::min(nearest, depth_below(n, middle, normal));
+  return nearest / source_.boundary.length(middle);
 }
 
-PALPATE_INLINE double PatchProjection::free_surface_below(NodeId middle, const Vector3& normal) const noexcept {
+/// Whether a node below is on a surface that faces away, and can move along the normal: the body can bend there.
+PALPATE_INLINE bool PatchProjection::is_free_side_below(NodeId node, NodeId middle,
+                                                        const Vector3& normal) const noexcept {
   constexpr double opposite = -0.5;
-  return nearest_below(middle, normal, [&](NodeId n) {
-    return source_.boundary.is_on_boundary(n) && source_.constrained[static_cast<std::size_t>(n)] == 0 &&
-           source_.boundary.normal(n).dot(normal) < opposite;
-  });
+  return source_.boundary.is_on_boundary(node) && source_.boundary.normal(node).dot(normal) < opposite &&
+         !detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(node)]) &&
+         depth_below(node, middle, normal) < infinity;
+}
+
+PALPATE_INLINE int PatchProjection::count_layers(NodeId middle, const Vector3& normal) const noexcept {
+  for (int layers = 1; layers <= source_.layers; ++layers)
+    for (const NodeId n : patch_.nodes(layers).subspan(patch_.nodes(layers - 1).size()))
+      if (is_free_side_below(n, middle, normal)) return layers;
+  return 0;
 }
 
 PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries,
@@ -330,7 +336,7 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   constexpr double near = 1.3, too_near = 0.7;  // edges of elements, lengths between nodes
   const double support = support_below(middle, normal);
   if (support < near * source_.mesh.element.order) marks.set(HalfSpaceMark::near_support);
-  thickness_ = free_surface_below(middle, normal) / source_.mesh.element.order;
+  layers_across_ = count_layers(middle, normal);
   if (support < too_near) return marks.set(HalfSpaceMark::thin);
   const HalfSpaceField field(stiffness.shear_modulus, stiffness.poisson_ratio, normal);
   load_.compute(patch_, field, normal, right_);

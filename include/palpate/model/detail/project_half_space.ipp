@@ -146,7 +146,7 @@ class HalfSpaceTable {
   void project();
   void project_vertex(PatchProjection& worker, int v);
   bool is_linear_tetrahedron() const noexcept { return source_.mesh.element.nodes == 4; }
-  double bending_error(double thickness) const noexcept;
+  double bending_error(int layers_across) const noexcept;
   double reach_of_edge(double poisson_ratio) const noexcept;
   bool is_disturbed(int v) const noexcept;
   Index longest_axis() const;
@@ -184,13 +184,19 @@ PALPATE_INLINE void HalfSpaceTable::place_vertices() {
   }
 }
 
-/// How much too stiff in bending a part of that thickness is [edges of elements], relative. Fitted to presses on lobes,
-/// plates and cantilevers of one to three elements, Poisson ratios to 0.49: 180 % for one Tet4, 30 % for
-/// Smoothed<Tet4>.
-PALPATE_INLINE double HalfSpaceTable::bending_error(double thickness) const noexcept {
+/// How much too stiff in bending a part with that many elements across it is, relative. Fitted to presses on lobes,
+/// plates and cantilevers of one to three elements, Poisson ratios to 0.49. The error of one Tet4 is 1.6 to 6, by the
+/// pattern of the mesh; what matters is where it falls below a tenth.
+PALPATE_INLINE double HalfSpaceTable::bending_error(int layers_across) const noexcept {
+  if (layers_across == 0) return 0.0;
   const ElementLayout& element = source_.mesh.element;
-  const double of_one = element.order > 1 ? 0.09 : !source_.domains.empty() ? 0.3 : is_linear_tetrahedron() ? 1.5 : 1.0;
-  return of_one / (thickness * thickness);
+  constexpr double tet4 = 2.0, smoothed = 0.3, hexahedron = 1.6, tet10 = 0.09, quadratic = 0.2;
+  const double of_one = element.nodes == 10        ? tet10
+                        : element.order > 1        ? quadratic
+                        : !source_.domains.empty() ? smoothed
+                        : is_linear_tetrahedron()  ? tet4
+                                                   : hexahedron;
+  return of_one / (layers_across * layers_across);
 }
 
 /// Up to which part of a long facet beside a sharp edge presses are more than a tenth too stiff: spheres of 0.3 to 1.25
@@ -218,7 +224,7 @@ PALPATE_INLINE void HalfSpaceTable::project_vertex(PatchProjection& worker, int 
   if (marks.has(HalfSpaceMark::singular) || marks.has(HalfSpaceMark::thin)) points_[i].root = 0.0;
   points_[i].is_disturbed = is_disturbed(v);
   if (marks.has(HalfSpaceMark::sharp_edge)) points_[i].on_edge = 1.0 / (1.0 - reach_of_edge(points_[i].poisson_ratio));
-  points_[i].bending_error = bending_error(worker.thickness());
+  points_[i].bending_error = bending_error(worker.layers_across());
 }
 
 PALPATE_INLINE void HalfSpaceTable::project() {
