@@ -140,8 +140,7 @@ class ContactProblem {
   BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
   double error_of_points(std::size_t t) const noexcept;
-  template <class Visit>
-  void for_each_pressing(std::size_t t, Visit&& visit) const noexcept;
+  bool presses(std::size_t t, int row) const noexcept;
   bool bends_coarse_elements(const ContactSurface& surface, std::size_t t, const ContactTool& tool) const noexcept;
   bool presses_edge(const ContactSurface& surface, std::size_t t, double longest) const noexcept;
   bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,

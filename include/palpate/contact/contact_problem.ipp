@@ -308,20 +308,19 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
   return levels_.deepest() > 0.0 ? levels_.deepest() / std::max(levels_.deepest(), rows_.deepest_push()) : 0.0;
 }
 
-/// Calls `visit(row, point)` for the points that a tool presses and does not hold.
-template <class Visit>
-void ContactProblem::for_each_pressing(std::size_t t, Visit&& visit) const noexcept {
-  for (int i = 0; i < rows_.count(); ++i) {
-    const Candidate& c = rows_.candidate(i);
-    if (c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0) visit(i, c);
-  }
+/// Whether a tool presses the point of a row, and does not hold it.
+PALPATE_INLINE bool ContactProblem::presses(std::size_t t, int row) const noexcept {
+  const Candidate& c = rows_.candidate(row);
+  return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0;
 }
 
 PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std::size_t t) const noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   if (!surface.has_shell()) return 0.0;
   double all = 0.0, on_rim = 0.0;
-  for_each_pressing(t, [&](int row, const Candidate& point) {
+  for (int row = 0; row < rows_.count(); ++row) {
+    if (!presses(t, row)) continue;
+    const Candidate& point = rows_.candidate(row);
     const Contact& c = rows_.contacts()[at(row)];
     all += c.force;
     double beside = 1.0;  // weights of vertices that are not on the rim
@@ -330,7 +329,7 @@ PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std
     const double length = surface.facet_length(point.triangle),
                  spacing = rows_.has_area(row) ? std::sqrt(point.area) : 0.0;
     if (beside < 1.0 && beside * length <= std::max(1e-9 * length, 0.5 * spacing)) on_rim += c.force;
-  });
+  }
   return all > 0.0 ? on_rim / all : 0.0;
 }
 
@@ -346,10 +345,12 @@ PALPATE_INLINE double ContactProblem::indentation(std::size_t t, const ContactTo
 
 PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue, std::size_t t) noexcept {
   double all = 0.0, behind = 0.0;
-  for_each_pressing(t, [&](int, const Candidate& c) {
+  for (int row = 0; row < rows_.count(); ++row) {
+    if (!presses(t, row)) continue;
+    const Candidate& c = rows_.candidate(row);
     all += c.force;
     if (!candidates_.faces_sphere(tissue, displacement_, c)) behind += c.force;
-  });
+  }
   return all > 0.0 ? behind / all : 0.0;
 }
 
@@ -420,14 +421,16 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
 PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool) const noexcept {
   double all = 0.0, error = 0.0, area = 0.0, modulus = 0.0;
-  for_each_pressing(t, [&](int row, const Candidate& c) {
+  for (int row = 0; row < rows_.count(); ++row) {
+    if (!presses(t, row)) continue;
+    const Candidate& c = rows_.candidate(row);
     all += c.force;
     area += c.area;
     if (const double own = rows_.bending_error(row); own > 0.0) {
       error += own * c.force;
       modulus = surface.material(c.triangle).modulus;
     }
-  });
+  }
   if (!(error > flagged_error * all && modulus > 0.0)) return false;
   const double depth = indentation(t, tool), force = tool.force.norm();
   const bool is_sphere = tool.half_length == 0.0 && tool.hull == nullptr;
@@ -442,10 +445,12 @@ PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, 
                                                  double longest) const noexcept {
   constexpr double part = 0.3;
   double all = 0.0, at_edge = 0.0;
-  for_each_pressing(t, [&](int row, const Candidate& c) {
+  for (int row = 0; row < rows_.count(); ++row) {
+    if (!presses(t, row)) continue;
+    const Candidate& c = rows_.candidate(row);
     all += c.force;
     if (rows_.on_edge(row) > 1.0 && surface.facet_length(c.triangle) > longest) at_edge += c.force;
-  });
+  }
   return at_edge > part * all;
 }
 
@@ -467,7 +472,9 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   const double longest_stretched = is_deep ? long_for_deep * tool.point_scale() : infinity;
   double all = 0.0, on_coarse = 0.0, on_very_long = 0.0;
   int points = 0;  // with an area
-  for_each_pressing(t, [&](int row, const Candidate& c) {
+  for (int row = 0; row < rows_.count(); ++row) {
+    if (!presses(t, row)) continue;
+    const Candidate& c = rows_.candidate(row);
     all += c.force;
     points += rows_.has_area(row);
     const auto is_longer = [fourth_power = surface.double_area_squared(c.triangle)](double length) {
@@ -477,7 +484,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
       on_coarse += c.force;
     else if (is_longer(very_long * tool.radius))
       on_very_long += c.force;
-  });
+  }
   if (points == 1 || points == 2) on_coarse += on_very_long;
   return on_coarse > least_part * all || presses_edge(surface, t, tool.hull == nullptr ? longest : 0.0);
 }

@@ -210,10 +210,11 @@ PALPATE_INLINE double HalfSpaceTable::reach_of_edge(double poisson_ratio) const 
 /// fine meshes. Others are up to 19 % too soft.
 PALPATE_INLINE bool HalfSpaceTable::is_disturbed(int v) const noexcept {
   const auto i = static_cast<std::size_t>(v);
-  const auto has = [marks = marks_[i]](HalfSpaceMark mark) { return marks.has(mark); };
+  const HalfSpaceMarks marks = marks_[i];
   if (source_.constrained[static_cast<std::size_t>(source_.touched[i])] != 0) return true;
-  if (has(HalfSpaceMark::several_materials) || has(HalfSpaceMark::anisotropic) || has(HalfSpaceMark::thin)) return true;
-  return !is_linear_tetrahedron() && (has(HalfSpaceMark::sharp_edge) || has(HalfSpaceMark::near_support));
+  if (marks.has(HalfSpaceMark::several_materials) || marks.has(HalfSpaceMark::anisotropic)) return true;
+  if (marks.has(HalfSpaceMark::thin)) return true;
+  return !is_linear_tetrahedron() && (marks.has(HalfSpaceMark::sharp_edge) || marks.has(HalfSpaceMark::near_support));
 }
 
 PALPATE_INLINE void HalfSpaceTable::project_vertex(PatchProjection& worker, int v) {
