@@ -34,7 +34,7 @@ struct ToolTick {
   palpate::Status status{};  ///< with what the gate reported
   Vector3 rendered;          ///< force to the device [N]
   double bound = 0.0;        ///< of the error of the force [N]
-  double of_points = 0.0;    ///< part of it: that there are few contact points, and that others could press [N]
+  double of_points = 0.0;    ///< part of the bound: few points press, or some have no row [N]
   double depth = 0.0;        ///< below the surface at rest [m]
   bool finite = true;        ///< contact force and rendered force
 };

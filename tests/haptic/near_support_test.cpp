@@ -2,7 +2,7 @@
 #include <palpate/element/smoothed.hpp>
 #include <palpate/testing/random.hpp>
 
-#include "contact/servo_session.hpp"
+#include "haptic/sphere_press.hpp"
 
 #include "catch.hpp"
 
@@ -14,29 +14,6 @@ using namespace palpate;
 namespace {
 
 using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
-
-struct Press {
-  double force;  // [N]
-  Status status;
-};
-
-/// A sphere pressed straight down on a plane at z = `top`, then still.
-Press press(Organ& organ, double radius, const Vector3& place, double top, double depth) {
-  ServoOptions options;
-  options.coupling_stiffness = infinity;
-  options.force_limits = test::open_gate();
-  HapticServo servo(organ, SphereTool{.radius = radius}, options);
-  Press result{};
-  for (int k = 0; k < 120; ++k) {
-    ToolState s;
-    s.position = place;
-    s.position[2] = top + radius - depth * std::min(1.0, k / 100.0);
-    s.time = 1e-3 * k;
-    result.status = servo.tick(s).status;
-  }
-  result.force = servo.contact_force()[2];
-  return result;
-}
 
 }  // namespace
 
@@ -52,7 +29,8 @@ TEST_CASE("a layer thinner than its facets on a fixed base: a force, with a flag
     for (int c = 0; c < 2; ++c)
       if (x[c] > 1e-6 && x[c] < 0.048 - 1e-6) x[c] += jitter * 0.048 / cells * random.uniform(-1.0, 1.0);
   Organ organ(mesh, scene, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.3});
-  const Press p = press(organ, radius, Vector3(0.0247, 0.0244, 0.0), thickness, depth);
+  const test::SpherePress p =
+      test::press_sphere(organ, radius, Vector3(0.0247, 0.0244, thickness), -Vector3::UnitZ(), depth);
   CAPTURE(cells, jitter, p.force);
   CHECK(p.force > 0.00073);  // that of a half-space; a fine mesh has 0.00182 N
   CHECK(p.status.has(StatusFlag::coarse_contact));
@@ -66,13 +44,27 @@ TEST_CASE("a layer as thick as its facets are long is right or flagged", "[hapti
     scene.fix("z0").touch(where::sphere({0.024, 0.024, thickness}, 0.008), {.radius = radius});
     Organ organ(box_tet4(Vector3(0.048, 0.048, thickness), {cells, cells, layers}, BoxSplit::six), scene,
                 LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.3});
-    return press(organ, radius, Vector3(0.0247, 0.0244, 0.0), thickness, depth);
+    return test::press_sphere(organ, radius, Vector3(0.0247, 0.0244, thickness), -Vector3::UnitZ(), depth);
   };
   const double truth = force_with(36, 4).force;
   const int cells = GENERATE(8, 10, 12, 16);
-  const Press p = force_with(cells, 1);
+  const test::SpherePress p = force_with(cells, 1);
   CAPTURE(radius, cells, p.force / truth);
   CHECK((std::abs(p.force / truth - 1.0) < 0.1 || p.status.has(StatusFlag::coarse_contact)));
+}
+
+TEST_CASE("a layer of two elements on a base is right and not flagged", "[haptic][contact]") {
+  const auto press_layer = [](int layers) {
+    const Vector3 at(0.0147, 0.0159, 0.008);
+    Scene scene;
+    scene.fix("z0").touch(where::sphere(at, 0.012));
+    test::Pad layer(box_tet4(Vector3(0.03, 0.03, 0.008), {layers * 4, layers * 4, layers}, BoxSplit::six), scene,
+                    LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.3});
+    return test::press_sphere(layer, 4e-3, at, -Vector3::UnitZ(), 0.5e-3);
+  };
+  const test::SpherePress p = press_layer(2);
+  CHECK(std::abs(p.force / press_layer(6).force - 1.0) < 0.1);
+  CHECK_FALSE(p.status.has(StatusFlag::coarse_contact));
 }
 
 TEST_CASE("a plane of symmetry below the surface is no support of the press", "[haptic][contact]") {
@@ -81,7 +73,7 @@ TEST_CASE("a plane of symmetry below the surface is no support of the press", "[
   scene.fix("z0").prescribe("x0", {0.0, {}, {}}).touch(where::sphere({0.004, 0.03, 0.02}, 0.012));
   Organ organ(box_tet4(Vector3(0.06, 0.06, 0.02), {12, 12, 8}, BoxSplit::six), scene,
               LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
-  const Press p = press(organ, 4e-3, Vector3(0.004, 0.0303, 0.0), 0.02, 0.1e-3);
+  const test::SpherePress p = test::press_sphere(organ, 4e-3, Vector3(0.004, 0.0303, 0.02), -Vector3::UnitZ(), 0.1e-3);
   const double hertz = 4.0 / 3.0 * 5e3 / (1.0 - 0.45 * 0.45) * std::sqrt(4e-3 * 0.1e-3) * 0.1e-3;
   CHECK(std::abs(p.force / hertz - 1.0) < 0.25);
 }
@@ -95,7 +87,8 @@ TEST_CASE("a support on the surface stiffens only presses close beside it", "[ha
   scene.touch(where::sphere({0.03 + beside, 0.03, 0.02}, 0.014), {.radius = radius});
   Organ organ(box_tet4(Vector3(0.06, 0.06, 0.02), {cells, cells, cells / 3}, BoxSplit::six), scene,
               LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
-  const Press p = press(organ, radius, Vector3(0.03 + beside, 0.0303, 0.0), 0.02, depth);
+  const test::SpherePress p =
+      test::press_sphere(organ, radius, Vector3(0.03 + beside, 0.0303, 0.02), -Vector3::UnitZ(), depth);
   const double modulus = 5e3 / (1.0 - 0.45 * 0.45);
   const double hertz = 4.0 / 3.0 * modulus * std::sqrt(radius * depth) * depth;
   CAPTURE(radius, beside, cells, p.force / hertz);
@@ -103,26 +96,31 @@ TEST_CASE("a support on the surface stiffens only presses close beside it", "[ha
 }
 
 TEST_CASE("a flat tool on a touched support has one torque, whatever the rounding", "[haptic][contact]") {
-  // The same scene at other places: rounding differs, and points of a support do not yield.
+  // The same scene at other places: rounding differs, and points of a support do not yield. Another tool may press deep
+  // into the tissue beside it.
   const double radius = 2e-3, half_length = 6e-3, depth = 1e-3;
-  const bool is_plate = GENERATE(false, true), may_glide = GENERATE(false, true);
+  const bool is_plate = GENERATE(false, true), may_glide = GENERATE(false, true), has_other = GENERATE(false, true);
   const auto torque_at = [&](const Vector3& origin) {
     Mesh<Tet4> mesh = box_tet4(Vector3(0.048, 0.048, 0.012), {8, 8, 2}, BoxSplit::six);
     for (Vector3& x : mesh.positions) x += origin;
     Scene scene;
+    const Selection support = where::box(origin + Vector3(-1.0, -1.0, 0.011), origin + Vector3(1.0, 0.032, 1.0));
     scene.fix("z0").touch("z1").prescribe(
-        "z1", may_glide ? Components{std::nullopt, std::nullopt, 0.0} : Components{0.0, 0.0, 0.0});
+        support, may_glide ? Components{std::nullopt, std::nullopt, 0.0} : Components{0.0, 0.0, 0.0});
     Organ organ(copy_mesh<Smoothed<Tet4>>(mesh), scene, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
     ServoOptions options;
     options.force_limits = test::open_gate();
-    const ToolList tool = is_plate ? ToolList(ConvexTool::box(Vector3(0.012, 0.008, 0.004), 1e-3))
-                                   : ToolList(CapsuleTool(radius, half_length));
-    HapticServo servo(organ, tool, options);
+    const SphereTool other{.radius = 4e-3};
+    const ToolList tools = is_plate ? ToolList{ConvexTool::box(Vector3(0.012, 0.008, 0.004), 1e-3), other}
+                                    : ToolList{CapsuleTool(radius, half_length), other};
+    HapticServo servo(organ, tools, options);
     for (int k = 0; k < 120; ++k) {
-      ToolState s;
-      s.position = origin + Vector3(0.0217, 0.0231, 0.012 + radius - depth * std::min(1.0, k / 100.0));
-      if (!is_plate) s.orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};  // along the x-axis
-      s.time = 1e-3 * k;
+      const double part = std::min(1.0, k / 100.0);
+      std::array<ToolState, 2> s;
+      s[0].position = origin + Vector3(0.0217, 0.0171, 0.012 + radius - depth * part);
+      if (!is_plate) s[0].orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};  // along the x-axis
+      s[1].position = origin + Vector3(0.0241, 0.0403, 0.012 + (has_other ? 4e-3 - 3e-3 * part : 0.1));
+      s[0].time = s[1].time = 1e-3 * k;
       servo.tick(s);
     }
     CHECK(servo.contact_force()[2] > 0.4);

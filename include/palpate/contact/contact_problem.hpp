@@ -106,7 +106,8 @@ class ContactProblem {
   static constexpr double largest_feedback = 0.75;     // of the normals of two linearisations
   static constexpr int most_corrections = 3;           // steps with the same compliance in a linearisation
   static constexpr double largest_correction = 0.05;   // where more is estimated, another linearisation follows
-  static constexpr double violation = 1e-5;            // allowed penetration, relative to the deepest dent
+  static constexpr double flagged_part = 0.1;          // of a force: a smaller part at bad places sets no flag
+  static constexpr double violation = 1e-5;            // allowed penetration, relative to the dent there
   static constexpr double rounding = 1e-12;            // the same, relative to the radius: a tool that just touches
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -163,8 +164,6 @@ class ContactProblem {
   void limit_feedback(bool converged, bool grows) noexcept;
   static double rest_of_changes(double before, double change, double rest) noexcept;
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
-
-  static constexpr double least_part = 0.1;  // of a force: where less of it is does not count
 
   ContactParameters parameters_;
   SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started

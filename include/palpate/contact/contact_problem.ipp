@@ -415,9 +415,9 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
 }
 
-/// Whether the elements across a thin body make it too stiff in bending for more than a tenth of the force. Their error
-/// counts as far as the body gives way as a whole: by what is left of the depth without the dent of the tool, that of
-/// Hertz for a sphere, for other tools about that of a disc with the area of the points. O(rows).
+/// Whether the force is more than a tenth too large because a thin body has too few elements across it to bend. Their
+/// error counts for the part of the depth that is not the dent of the tool: that of Hertz for a sphere, for other tools
+/// about that of a disc with the area of the points. O(rows).
 PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& surface, std::size_t t,
                                                           const ContactTool& tool) const noexcept {
   double all = 0.0, error = 0.0, area = 0.0, modulus = 0.0;
@@ -449,7 +449,7 @@ PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, 
     if (!presses(t, row)) continue;
     const Candidate& c = rows_.candidate(row);
     all += c.force;
-    if (rows_.on_edge(row) > 1.0 && surface.facet_length(c.triangle) > longest) at_edge += c.force;
+    if (rows_.edge_nearness(row) > 1.0 && surface.facet_length(c.triangle) > longest) at_edge += c.force;
   }
   return at_edge > part * all;
 }
@@ -486,7 +486,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
       on_very_long += c.force;
   }
   if (points == 1 || points == 2) on_coarse += on_very_long;
-  return on_coarse > least_part * all || presses_edge(surface, t, tool.hull == nullptr ? longest : 0.0);
+  return on_coarse > flagged_part * all || presses_edge(surface, t, tool.hull == nullptr ? longest : 0.0);
 }
 
 /// The part of the force by which a contact of few points may be wrong: measured with spheres on meshes whose nodes
@@ -842,9 +842,6 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   violated_count_ = 0;
   levels_.begin_round();
   proxies_.look_ahead(tools, floor_);
-  // Not of the push: on a support nearly all of that is in the coupling, and points without rows would remain, chosen
-  // by rounding.
-  const double allowed = built > 0 ? violation * rows_.deepest_dent() : 0.0;
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
   for (Candidates::Near& near : candidates_.within(reaches, tools)) {
@@ -867,7 +864,12 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     if (tool.half_length > 0.0) gap += c.normal.dot(ahead.turn * c.core);
     if (!c.facing || gap > 2.0 * rows_.longest_path()) continue;
     if (gap > candidates_.longest_move(tissue, displacement_, c)) continue;
-    gap -= c.normal.dot(candidates_.position(tissue, displacement_, c) - c.point);
+    const Vector3& point = candidates_.position(tissue, displacement_, c);
+    gap -= c.normal.dot(point - c.point);
+    // Of the dent there, not of the push: a support does not yield, and rounding would choose which of its points
+    // press.
+    const double dent = c.normal.dot(candidates_.rest(tissue.contact_surface(), candidates_.sample_of(c)) - point);
+    const double allowed = built > 0 ? violation * std::abs(dent) : 0.0;
     if (!(gap < -std::max(allowed, rounding * tool.radius))) continue;
     if (is_finer)
       levels_.note_skipped(c.tool, -gap);

@@ -111,7 +111,7 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
     p.root += weight * own.root;
     p.poisson_ratio += weight * own.poisson_ratio;
     p.length += weight * own.length;
-    p.on_edge += weight * own.on_edge;
+    p.edge_nearness += weight * own.edge_nearness;
     p.bending_error += weight * own.bending_error;
     p.is_disturbed = p.is_disturbed || own.is_disturbed;
   }

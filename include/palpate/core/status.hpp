@@ -32,7 +32,7 @@ enum class StatusFlag : std::uint32_t {
   slow_tissue = 1u << 15,  ///< computing a tissue step takes longer than its time step: the tissue moves in slow motion
   coarse_contact = 1u << 16,  ///< the tool is smaller than the facets: its indentation is mostly estimated, or omitted;
                               ///< or the error of the force is above a tenth of it, as measured or by the facets;
-                              ///< or an edge, a support, another material is near, or it bends with few elements
+                              ///< or an edge, a support or another material is near, or few elements bend there
   large_displacement = 1u << 17,  ///< loads or a tool displace the tissue too far for linear elasticity
   lost_contact = 1u << 18,       ///< the tool is inside the tissue: it passed through the surface, or entered where the
                                  ///< body cannot be touched; its force is zero, or points the wrong way

@@ -48,9 +48,11 @@ class ContactRows {
     const HalfSpacePoint& point = compliance_.half_space_point(candidate(row).slot);
     return (point.is_known() || point.is_fixed) && !point.is_disturbed;
   }
-  /// HalfSpacePoint::on_edge of the point of a row.
-  double on_edge(int row) const noexcept { return compliance_.half_space_point(candidate(row).slot).on_edge; }
-  /// How much too stiff in bending the body at the point of a row is, relative.
+  /// HalfSpacePoint::edge_nearness of the point of a row.
+  double edge_nearness(int row) const noexcept {
+    return compliance_.half_space_point(candidate(row).slot).edge_nearness;
+  }
+  /// HalfSpacePoint::bending_error of the point of a row.
   double bending_error(int row) const noexcept {
     return compliance_.half_space_point(candidate(row).slot).bending_error;
   }
@@ -103,9 +105,6 @@ class ContactRows {
   double largest_force_scale(std::span<const ContactTool> tools) const noexcept;
   /// Penetration without contact force, at the deepest row built [m].
   double deepest_push() const noexcept;
-
-  /// Displacement of the tissue along the normal, at the row where it is largest [m]: after `apply`.
-  double deepest_dent() const noexcept;
 
   /// Writes the solution to rows, vertices and tools. Candidates get their forces; they stay where they are.
   void apply(const TissueView& tissue, const Candidates& points, std::span<ContactTool> tools,

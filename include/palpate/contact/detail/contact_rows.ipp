@@ -245,12 +245,6 @@ PALPATE_INLINE double ContactRows::deepest_push() const noexcept {
   return deepest;
 }
 
-PALPATE_INLINE double ContactRows::deepest_dent() const noexcept {
-  double deepest = 0.0;
-  for (int i = 0; i < count_; ++i) deepest = std::max(deepest, std::abs(rows_[at(i)].normal.dot(moved_[i])));
-  return deepest;
-}
-
 /// The forces of the solution, of rows and tools.
 PALPATE_INLINE void ContactRows::store_forces(std::span<ContactTool> tools) noexcept {
   pressing_force_.fill(0.0);

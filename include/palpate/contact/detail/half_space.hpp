@@ -16,8 +16,8 @@ struct HalfSpacePoint {
   double root = 0.0;                   ///< 1 / sqrt(4 pi mu) [sqrt(m^2/N)], see `root_of`
   double poisson_ratio = 0.0;          ///< nu
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
-  double on_edge = 0.0;                ///< on a sharp edge: above 1 is too near to it. Between vertices linear
-  double bending_error = 0.0;          ///< of the elements across a thin body: too stiff by that, relative
+  double edge_nearness = 0.0;          ///< nearness of a sharp edge, linear between vertices: above 1 is too near
+  double bending_error = 0.0;          ///< of the stiffness of a thin body in bending, relative, by its elements
   int body = 0;                        ///< points of different bodies have nothing of each other
   bool is_disturbed = false;           ///< too different from a half-space for its elements: edge, support, another
                                        ///< material or a cut

@@ -136,8 +136,8 @@ class PatchProjection {
   /// above a support that is too near, and when there is no solution: a pivot that is not positive, or a residual above
   /// 1e-8.
   void solve(int vertex, const Vector3& normal, std::vector<PatchEntry>& entries, HalfSpaceMarks& marks);
-  /// Of the last patch: how many elements are between its middle and the surface on the other side of the body, where
-  /// that is free; 0 where that is farther away than the patch.
+  /// Elements between the middle of the last patch and the surface on the other side of the body, where that is free to
+  /// move; 0 where it is farther away than the patch.
   int layers_across() const noexcept { return layers_across_; }
 
  private:
@@ -159,9 +159,9 @@ class PatchProjection {
   VectorX b_, x_;
   std::vector<int> known_;  // per node, the patch for which its boundary value is known, and where that is
   std::vector<int> value_of_;
-  int layers_across_ = 0;
   std::vector<Matrix3> values_;
   int number_ = 0;
+  int layers_across_ = 0;
 };
 
 }}  // namespace palpate

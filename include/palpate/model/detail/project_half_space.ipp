@@ -184,9 +184,9 @@ PALPATE_INLINE void HalfSpaceTable::place_vertices() {
   }
 }
 
-/// How much too stiff in bending a part with that many elements across it is, relative. Fitted to presses on lobes,
-/// plates and cantilevers of one to three elements, Poisson ratios to 0.49. The error of one Tet4 is 1.6 to 6, by the
-/// pattern of the mesh; what matters is where it falls below a tenth.
+/// Estimated relative error of the stiffness in bending of a part with that many elements across it. Fitted to presses
+/// on lobes, plates and cantilevers of one to three elements, Poisson ratios to 0.49, so that it falls below a tenth
+/// where the error does. With one Tet4 across the error is 1.6 to 6, by the pattern of the mesh.
 PALPATE_INLINE double HalfSpaceTable::bending_error(int layers_across) const noexcept {
   if (layers_across == 0) return 0.0;
   const ElementLayout& element = source_.mesh.element;
@@ -206,8 +206,8 @@ PALPATE_INLINE double HalfSpaceTable::reach_of_edge(double poisson_ratio) const 
 }
 
 /// Above a support that is not thin, and on facets at an edge, linear tetrahedra have forces within a tenth all the
-/// same, unless the edge is too near (HalfSpacePoint::on_edge): measured with presses against quadratic elements on
-/// fine meshes. Others are up to 19 % too soft.
+/// same, unless the edge is too near (HalfSpacePoint::edge_nearness): measured with presses against quadratic elements
+/// on fine meshes. Others are up to 19 % too soft.
 PALPATE_INLINE bool HalfSpaceTable::is_disturbed(int v) const noexcept {
   const auto i = static_cast<std::size_t>(v);
   const HalfSpaceMarks marks = marks_[i];
@@ -224,7 +224,8 @@ PALPATE_INLINE void HalfSpaceTable::project_vertex(PatchProjection& worker, int 
   const HalfSpaceMarks marks = marks_[i];
   if (marks.has(HalfSpaceMark::singular) || marks.has(HalfSpaceMark::thin)) points_[i].root = 0.0;
   points_[i].is_disturbed = is_disturbed(v);
-  if (marks.has(HalfSpaceMark::sharp_edge)) points_[i].on_edge = 1.0 / (1.0 - reach_of_edge(points_[i].poisson_ratio));
+  if (marks.has(HalfSpaceMark::sharp_edge))
+    points_[i].edge_nearness = 1.0 / (1.0 - reach_of_edge(points_[i].poisson_ratio));
   points_[i].bending_error = bending_error(worker.layers_across());
 }
 
