@@ -195,6 +195,20 @@ TEST_CASE("points deep inside the core of a convex tool get finite forces outwar
   CHECK(s.force() == Vector3::Zero());
 }
 
+TEST_CASE("a flat tool on a support has the points it needs: finer ones in its plane are no doubt", "[contact][convex]") {
+  const double radius = 1e-3;
+  AnalyticTissue support(40, 0.04, 1e-12);  // hardly yields
+  const ConvexTool plate = ConvexTool::box({0.007, 0.007, 0.004}, radius);
+  ToolSession s(support, {tool_of(plate.hull(), radius, {1e-4, 2e-4, 2.5e-3}, 1e-3)}, {}, radius);
+  s.move(0, {1e-4, 2e-4, 1e-3}, 200);
+  s.settle();
+  s.status = {};
+  s.settle();
+  CHECK_THAT(s.force()[2], WithinRel(1.0, 1e-3));
+  CHECK_FALSE(s.status.has(StatusFlag::degraded_model));
+  CHECK_FALSE(s.status.has(StatusFlag::solver_not_converged));
+}
+
 TEST_CASE("a hull of one point is a sphere, of two points a capsule", "[contact][convex]") {
   const double friction = GENERATE(0.0, 0.4), rotational = GENERATE(0.0, 0.4);
   const double half = GENERATE(0.0, 6e-3), radius = 3e-3;
@@ -224,7 +238,7 @@ TEST_CASE("a hull of one point is a sphere, of two points a capsule", "[contact]
   INFO("half length " << half << ", friction " << friction << ", difference " << worst << " N of " << largest);
   CHECK(largest > 0.01);
   // Friction is solved to 1e-4: a capsule at poses that differ by rounding has forces that differ by as much as here.
-  // Without it, a point that penetrates by less than 1e-5 of the deepest push may have a row in one session only.
+  // Without it, a point that penetrates by less than 1e-5 of its dent may have a row in one session only.
   const double tolerance = friction > 0.0 ? 2e-2 : 1e-7;
   CHECK(worst <= tolerance * largest);
   CHECK(worst_torque <= tolerance * largest * (radius + half));

@@ -842,6 +842,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   violated_count_ = 0;
   levels_.begin_round();
   proxies_.look_ahead(tools, floor_);
+  const double unnoticed = violation * rows_.deepest_push();  // by the force
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
   for (Candidates::Near& near : candidates_.within(reaches, tools)) {
@@ -872,7 +873,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     const double allowed = built > 0 ? violation * std::abs(dent) : 0.0;
     if (!(gap < -std::max(allowed, rounding * tool.radius))) continue;
     if (is_finer)
-      levels_.note_skipped(c.tool, -gap);
+      levels_.note_skipped(c.tool, gap < -unnoticed ? -gap : 0.0);
     else
       violated_[at(violated_count_++)] = {gap, &c};
   }

@@ -62,7 +62,8 @@ class PointLevels {
   void note_room(int tool, int points, int room) noexcept;
   /// Forgets the points noted before: those of the last round of a tick count.
   void begin_round() noexcept;
-  /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m].
+  /// A point that has no row because of the level, where there are no areas: the tool sinks in between the others [m];
+  /// 0 where the force does not notice.
   void note_skipped(int tool, double penetration) noexcept;
   /// A point for which there is no room, and its penetration [m].
   void note_left_out(int tool, double penetration) noexcept;
