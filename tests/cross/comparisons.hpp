@@ -23,6 +23,9 @@ double force_scale(const Scene& scene, double peak);
 Finding at(const char* oracle, const Run& run, int tick, int tool, double found, double expected,
            palpate::Status excuse);
 
+/// Whether a tool reaches a support at an end of a box.
+bool presses_support(const Scene& scene);
+
 /// Findings where forces differ by more than `tolerance` of the largest force; with 0 where bits, flags or bounds
 /// differ, and then no flag excuses it. Ends at the first silent one. The bounds that the runs state for their points
 /// count up to `most_of_points` of the largest force.

@@ -197,7 +197,8 @@ class Draw {
     if (scene_.measured && chance(0.5)) scene_.corrected = true;
     if (scene_.tools.size() == 1 && tool.kind == "sphere" && chance(0.08)) deep(tool);
     if (scene_.tools.size() == 1 && !is_moving && is_box() && chance(0.03)) many_points(tool);
-    if (scene_.tools.size() == 2 && tool.opposite != scene_.tools[1].opposite && chance(0.5)) hard_pinch();
+    if (scene_.tools.size() == 2 && tool.opposite != scene_.tools[1].opposite && chance(0.5) && has_opposite(scene_))
+      hard_pinch();
     if (quasi_static() && scene_.law == "viscoelastic" && chance(0.5)) long_hold(tool);
     if (quasi_static() && is_box() && chance(0.06)) stretch();
     if (is_moving && chance(0.06)) hanging_stiff_end();

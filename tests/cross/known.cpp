@@ -1,6 +1,7 @@
 #include "known.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -39,6 +40,7 @@ bool is_met(const Scene& s, const Finding& f, const Known::Condition& c) {
   look("moves", moves(s.solver) ? 1.0 : 0.0);
   look("is_cut", is_cut(s) ? 1.0 : 0.0);
   look("torques", f.of_torques ? 1.0 : 0.0);
+  look("part", f.expected != 0.0 ? std::abs(f.found / f.expected) : 0.0);
   if (!found) throw std::runtime_error("there is no value \"" + c.name + "\"");
   return met;
 }
