@@ -8,7 +8,7 @@ set(palpate_units
   "contact_haptic contact/* haptic/*"  # one tick runs through both
   # Half the time of such a small room is spent on its headers.
   "base assembly/* concepts/* condensation/* core/* device/* element/* integrator/* local/* material/* post/* quadrature/*"
-  "model_advice model/static/suggest.ipp model/static/trade_off.ipp model/static/detail/candidate_maker.ipp"
+  "model_advice model/static/suggest.ipp model/static/detail/candidate_maker.ipp"
   "shipped_tetrahedra model/shipped/*tet*"
   "shipped_hexahedra model/shipped/*hex*")
 

@@ -5,8 +5,8 @@
 #include "statics.hpp"
 
 #include <palpate/post/detail/point_stress.hpp>
-#include <palpate/quadrature/tensor.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
+#include <palpate/quadrature/gauss_legendre.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 namespace accuracy {
 

@@ -1,8 +1,7 @@
 // Meshes of any element: boxes, and boxes mapped to other shapes. Elements with curved edges follow the shape.
 #pragma once
 
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/testing/random.hpp>

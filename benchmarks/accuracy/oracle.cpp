@@ -6,6 +6,8 @@
 
 #include "../../examples/solve_case/case_file.hpp"
 
+#include <palpate/io/detail/text_reader.hpp>
+
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -92,7 +94,7 @@ double difference(const Mesh<E>& mesh, const json& load_case, const std::map<Ind
 template <Element E>
 void compare_folder(const fs::path& root, const fs::path& folder, const solve_case::CaseFile& file, Table& table,
                     const std::map<std::string, std::string>& disagreement, Checks& checks) {
-  io::GmshNumbering ids;
+  io::MeshNumbering ids;
   const Mesh<E> mesh = io::read_mesh<E>(file.mesh_v22, 1.0, &ids);
   const std::vector<Index> tags(ids.node_tags.begin(), ids.node_tags.end());
   const std::string name = fs::relative(folder, root).generic_string();

@@ -8,7 +8,6 @@
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "organ_scene.hpp"
 
 #include <palpate/cut/cuttable_moving.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 

@@ -5,7 +5,7 @@
 #include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/neo_hookean.hpp>
 
 #include "../common/bodies.hpp"

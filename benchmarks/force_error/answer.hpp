@@ -1,8 +1,7 @@
 // Definition of answer().
 #pragma once
 
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/promote.hpp>
 
 #include <palpate/model/static/measured_force_error.hpp>

@@ -1,6 +1,6 @@
 #include <palpate/io/read_mesh.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/mesh/where.hpp>
 

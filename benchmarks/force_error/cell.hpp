@@ -3,10 +3,10 @@
 
 #include <palpate/assembly/body.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/haptic/tool_list.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>

@@ -1,5 +1,4 @@
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include <algorithm>
 #include <cstdio>

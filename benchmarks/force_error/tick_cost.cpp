@@ -1,4 +1,4 @@
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

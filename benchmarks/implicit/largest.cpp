@@ -4,9 +4,8 @@
 #include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
-#include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>

@@ -1,6 +1,5 @@
 // Accuracy and smoothness of the rendered force, for every element. Exits with 1 when a check fails.
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include <cstdio>
 

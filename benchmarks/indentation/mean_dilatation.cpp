@@ -1,4 +1,4 @@
-#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include "layer.hpp"
 

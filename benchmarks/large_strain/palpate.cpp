@@ -1,6 +1,6 @@
 // palpate's moving tissue.
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>

@@ -1,7 +1,7 @@
 // A block pressed and dragged at large strain, for several methods.
 #pragma once
 
-#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/mesh/generators.hpp>
 

@@ -2,7 +2,7 @@
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
-#include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 
 namespace setup {

@@ -3,7 +3,7 @@
 #include "cholmod.hpp"
 #include "setup.hpp"
 
-#include <palpate/io/gmsh.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/Cholesky>

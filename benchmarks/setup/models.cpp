@@ -2,7 +2,7 @@
 #include "../common/bodies.hpp"
 #include "setup.hpp"
 
-#include <palpate/io/gmsh.hpp>
+#include <palpate/io/read_mesh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
 #include <memory>

@@ -3,9 +3,8 @@
 
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
-#include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 
 namespace maps {
 namespace {

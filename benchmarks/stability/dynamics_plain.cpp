@@ -2,7 +2,7 @@
 #include "dynamics_schemes.hpp"
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
-#include <palpate/integrator/detail/implicit_step.hpp>
+#include <palpate/integrator/time_scheme.hpp>
 
 #include <Eigen/SparseCholesky>
 

@@ -5,7 +5,7 @@
 // and advice in time.
 //   bench_suggest [--budget-us N] [--setup S] [--seconds S] [--only BODY]
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>
+#include <palpate/mesh/refine_near.hpp>
 #include <palpate/model/static/suggest.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Duration of a tick: in direct succession, after sleep with empty caches, and in a loop of 10 kHz.
 #include "tick.hpp"
 
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 
 #include <chrono>
 #include <thread>

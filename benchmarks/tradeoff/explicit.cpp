@@ -3,8 +3,8 @@
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
-#include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/neo_hookean.hpp>
 
 #include "soft.hpp"

@@ -1,8 +1,8 @@
 // Linear compositions rendered by a servo.
 #pragma once
 
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

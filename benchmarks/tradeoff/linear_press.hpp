@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/essential_conditions.hpp>
-#include <palpate/condensation/condensed_system.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/linear/detail/indexed_vector.hpp>
 #include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>

@@ -1,5 +1,5 @@
 // Position-based constraints, used in games where springs do not preserve volume.
-#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // Cotin's quasi-non-linear elasticity over a linear composition.
-#include <palpate/model/static/detail/quasi_non_linear.hpp>
+#include <palpate/model/static/stiffening.hpp>
 
 #include "linear.hpp"
 

@@ -1,5 +1,5 @@
 // Mass-spring systems, used in games and many simulators.
-#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <map>

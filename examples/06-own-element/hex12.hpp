@@ -2,7 +2,7 @@
 // 3.2).
 #pragma once
 
-#include <palpate/element/quad4.hpp>
+#include <palpate/element/hex8.hpp>
 
 /// An element consists of nodes, shape functions and their gradients, faces and quadrature rules. It is not registered
 /// anywhere. `static_assert(palpate::Element<Hex12>)` below checks the form at compile time, the laws of

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/material/mooney_rivlin.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
+#include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/model/moving/equilibrium.hpp>

@@ -15,7 +15,7 @@ namespace solve_case {
 template <palpate::Element E>
 struct NumberedMesh {
   palpate::Mesh<E> mesh;
-  palpate::io::GmshNumbering ids;
+  palpate::io::MeshNumbering ids;
 };
 
 /// The static state of a load case. Vectors are 3 x nodes of the model, node by node; `node_map` maps the nodes of the

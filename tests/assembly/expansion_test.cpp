@@ -1,7 +1,7 @@
 // Growth and thermal expansion per region.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/post/stress.hpp>
 

@@ -1,7 +1,7 @@
 // Bodies with one fibre direction per element.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/generators_box.hpp>

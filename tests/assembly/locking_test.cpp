@@ -1,7 +1,7 @@
 // Volumetric locking of plain elements, and elements that avoid it.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/assembler_laws.hpp>
 

@@ -1,7 +1,7 @@
 // The mass of whole bodies.
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
-#include <palpate/mesh/detail/repair.hpp>
+#include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/generators_box.hpp>
 
 #include <Eigen/Geometry>

@@ -3,7 +3,6 @@
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/smoothed_tetrahedra.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 

@@ -3,7 +3,7 @@
 #include <catch.hpp>
 
 #include <palpate/c/palpate.h>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/model/rendering/visual_surface.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
 #include <palpate/palpate.hpp>

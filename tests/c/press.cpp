@@ -1,5 +1,5 @@
 // The press of press.c with the C++ composition itself: the same output.
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdio>

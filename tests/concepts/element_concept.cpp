@@ -1,6 +1,6 @@
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/tet10.hpp>
-#include <palpate/element/with_quadrature.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include "catch.hpp"
 #include "element/thesis_tet4.hpp"

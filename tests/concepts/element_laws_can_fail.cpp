@@ -1,8 +1,8 @@
 // A deliberate break for every element law: a law that cannot fail tests nothing.
-#include <palpate/element/quad4.hpp>
-#include <palpate/element/quad8.hpp>
+#include <palpate/element/hex20.hpp>
+#include <palpate/element/hex8.hpp>
+#include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/element/tri6.hpp>
 #include <palpate/testing/element_laws.hpp>
 
 #include "catch.hpp"

@@ -1,8 +1,7 @@
 // Types that the concepts HapticDevice and Servo accept and refuse.
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/concepts/servo.hpp>
 #include <palpate/device/mock_device.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/device/recorder.hpp>
 
 #include "catch.hpp"
 

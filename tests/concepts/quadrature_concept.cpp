@@ -1,6 +1,5 @@
 #include <palpate/quadrature/gauss_legendre.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
-#include <palpate/quadrature/triangle.hpp>
+#include <palpate/quadrature/simplex.hpp>
 #include <vector>
 
 #include "catch.hpp"

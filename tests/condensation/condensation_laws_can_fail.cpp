@@ -1,5 +1,5 @@
 // One deliberate error for every check of the law suite of condensed systems.
-#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/testing/condensation_laws.hpp>
 

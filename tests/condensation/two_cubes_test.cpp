@@ -1,9 +1,8 @@
 // Condensation (thesis 3.7) against another code and against the full solve.
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/condensation/condensed_system.hpp>
-#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/condensation/static_systems.hpp>
+#include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/dense_conjugate_gradient.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/testing/condensation_laws.hpp>
 

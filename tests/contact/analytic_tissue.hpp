@@ -1,7 +1,7 @@
 // A tissue with a known solution: independent springs, all of them on one common spring.
 #pragma once
 
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/contact_problem.hpp>
 
 #include <vector>

@@ -1,7 +1,7 @@
 // Capsules, their torque, and grasped points compared with closed forms.
 #include "contact/tool_session.hpp"
 
-#include <palpate/contact/capsule_tool.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/testing/random.hpp>

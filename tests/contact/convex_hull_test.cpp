@@ -1,7 +1,7 @@
 // Convex hulls of a few points, their closest points, and their separation from triangles.
 #include <palpate/contact/convex_hull.hpp>
-#include <palpate/contact/convex_tool.hpp>
-#include <palpate/contact/detail/hull_separation.hpp>
+#include <palpate/contact/detail/hull_placement.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/testing/random.hpp>
 

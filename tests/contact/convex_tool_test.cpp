@@ -2,8 +2,8 @@
 #include "contact/servo_session.hpp"
 #include "contact/tool_session.hpp"
 
-#include <palpate/contact/convex_tool.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/testing/random.hpp>
 

@@ -1,5 +1,5 @@
 // Fields and compliance of an elastic half-space.
-#include <palpate/contact/detail/half_space_loads.hpp>
+#include <palpate/contact/detail/half_space.hpp>
 #include <palpate/contact/detail/half_space_field.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
 #include <palpate/testing/random.hpp>

@@ -1,6 +1,6 @@
 // The compliance between contact points and when it is read again.
-#include <palpate/concepts/still_tissue.hpp>
-#include <palpate/contact/detail/point_compliance.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
+#include <palpate/contact/detail/row_compliance.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

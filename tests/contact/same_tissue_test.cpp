@@ -2,7 +2,7 @@
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/cut/cuttable.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/where.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>

@@ -2,8 +2,7 @@
 #include "contact/analytic_tissue.hpp"
 
 #include <palpate/contact/detail/hull_placement.hpp>
-#include <palpate/contact/detail/hull_separation.hpp>
-#include <palpate/contact/detail/sweep.hpp>
+#include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>

@@ -1,5 +1,5 @@
 #include <limits>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <thread>
 #include <type_traits>
 

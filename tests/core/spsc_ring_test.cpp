@@ -1,5 +1,5 @@
 // A queue between two threads: all values, in order, none twice.
-#include <palpate/core/spsc_ring.hpp>
+#include <palpate/core/thread_exchange.hpp>
 
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,5 @@
 // A rotation tracked from one state to the next is the closest one.
-#include <palpate/core/detail/tracked_rotation.hpp>
+#include <palpate/core/rotation.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // One writer, one reader: the newest complete value, in order.
-#include <palpate/core/triple_buffer.hpp>
+#include <palpate/core/thread_exchange.hpp>
 
 #include <cstdint>
 #include <thread>

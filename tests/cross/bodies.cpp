@@ -3,7 +3,6 @@
 
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/mesh/quality.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/testing/random.hpp>

@@ -4,10 +4,10 @@
 #include "scene.hpp"
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/haptic/tool_list.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 

@@ -6,20 +6,17 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/orthotropic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/material/viscoelastic.hpp>
 
 #include <cmath>

@@ -204,7 +204,7 @@ class Program {
   void mesh() {
     const std::string cells = joined({text_of(s_.cells_x), text_of(s_.cells_y), text_of(s_.cells_z)});
     if (is_round(s_)) {
-      headers_.insert("palpate/mesh/generators_round.hpp");
+      headers_.insert("palpate/mesh/generators.hpp");
       line("auto mesh = sphere_tet4(" + text_of(radius()) + ", " + text_of(s_.cells_x) + ");");
       round_groups();
     } else {

@@ -4,7 +4,6 @@
 
 #include <palpate/core/setup_error.hpp>
 #include <palpate/device/recorder.hpp>
-#include <palpate/device/replay_device.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Moving tissue at large strain that is cut, against models made of what a cut leaves.
 #include <palpate/cut/cuttable_moving.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/testing/allocation_counter.hpp>

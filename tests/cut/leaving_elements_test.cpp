@@ -4,8 +4,8 @@
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/motion_of_part.hpp>
-#include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/moving/detail/corotated_motion.hpp>

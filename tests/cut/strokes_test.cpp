@@ -1,8 +1,8 @@
 // Many short strokes with a blade, through bodies that move while they are cut.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>

@@ -1,7 +1,7 @@
 // The law suite for devices accepts correct devices and detects each kind of faulty one.
 #include <palpate/core/detail/limit_length.hpp>
 #include <palpate/device/mock_device.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/testing/device_laws.hpp>
 

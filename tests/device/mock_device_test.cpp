@@ -1,6 +1,6 @@
 // Trajectories, faults and clocks of the mock device.
 #include <palpate/device/mock_device.hpp>
-#include <palpate/testing/open_gate.hpp>
+#include <palpate/testing/device_laws.hpp>
 
 #include "catch.hpp"
 

@@ -1,6 +1,5 @@
 // A device placed in a scene.
 #include <palpate/device/mock_device.hpp>
-#include <palpate/testing/open_gate.hpp>
 #include <palpate/device/placement.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/testing/device_laws.hpp>

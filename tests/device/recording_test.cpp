@@ -4,14 +4,15 @@
 #include <clocale>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <locale>
 #include <memory>
 #include <palpate/device/mock_device.hpp>
-#include <palpate/testing/open_gate.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/testing/device_laws.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

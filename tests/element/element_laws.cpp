@@ -1,8 +1,6 @@
 #include <palpate/element/hex20.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
-#include <palpate/element/with_quadrature.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/testing/element_laws.hpp>
 
 #include "catch.hpp"

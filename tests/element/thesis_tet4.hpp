@@ -1,8 +1,8 @@
 #pragma once
 
 #include <numbers>
-#include <palpate/element/tri3.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
+#include <palpate/element/tet4.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 /// The thesis' regular reference tetrahedron as a user-defined element: corrected, and as printed.
 namespace thesis {

@@ -2,8 +2,7 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
-#include <palpate/quadrature/triangle.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 /// User-defined elements: the law suites must also work for elements outside the library.
 namespace user {

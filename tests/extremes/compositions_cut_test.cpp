@@ -1,7 +1,7 @@
 // Compositions of tools and loops with tissue that is cut.
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 

@@ -1,5 +1,5 @@
 // Compositions of tools and loops with linear statics.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/static/stiffening.hpp>

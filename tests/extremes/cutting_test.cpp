@@ -5,7 +5,6 @@
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

@@ -1,6 +1,6 @@
 // E: extremes of motion. Extremes tested with the component itself have their tag there.
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>

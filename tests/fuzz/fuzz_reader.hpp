@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/element/tet4.hpp>
-#include <palpate/io/detail/mesh_builder.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 #include <cstdlib>
 #include <span>

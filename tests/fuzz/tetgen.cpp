@@ -1,6 +1,6 @@
 #include "fuzz_reader.hpp"
 
-#include <palpate/io/tetgen.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 /// The .node, .ele and .face files, separated by the byte 0x1F.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 #include "fuzz_reader.hpp"
 
-#include <palpate/io/veg.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 /// The .veg file and, after the byte 0x1F, the text that every *INCLUDE inserts.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

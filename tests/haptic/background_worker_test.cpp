@@ -1,7 +1,7 @@
 // Steps in a thread of their own, tissue that does not keep up, and work that throws or that nobody does.
 #include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/device/mock_device.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/haptic_session.hpp>

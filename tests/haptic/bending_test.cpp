@@ -1,7 +1,7 @@
 // Presses that bend a thin body: right within a tenth, or flagged.
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/generators_box.hpp>
 
 #include "haptic/sphere_press.hpp"

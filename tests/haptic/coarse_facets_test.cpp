@@ -4,7 +4,7 @@
 #include "catch.hpp"
 
 #include <palpate/concepts/tissue_adaptor.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/where.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
 #include <palpate/testing/allocation_counter.hpp>

@@ -1,7 +1,7 @@
 // Convex tools in a servo: symmetries, placement, recovery, allocation and replay.
 #include "contact/servo_session.hpp"
 
-#include <palpate/contact/detail/hull_separation.hpp>
+#include <palpate/contact/detail/hull_placement.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/haptic_session.hpp>

@@ -1,10 +1,9 @@
 // Deep presses into tissue at large strain: forces of independent finite elements, and no depth at which the tool
 // slides off the tissue.
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/testing/random.hpp>
 

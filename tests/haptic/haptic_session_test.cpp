@@ -1,7 +1,7 @@
 // Devices, tools and a tissue in one object: values from the devices, refusals, start, stop and reports.
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/placement.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/haptic_session.hpp>
 #include <palpate/testing/allocation_counter.hpp>

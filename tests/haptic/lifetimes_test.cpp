@@ -1,7 +1,7 @@
 // Two models, four threads, and the order of destruction.
 #include "contact/servo_session.hpp"
 
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 
 #include <palpate/device/mock_device.hpp>
 

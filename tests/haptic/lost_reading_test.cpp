@@ -1,7 +1,7 @@
 // Lost readings of a tool's pose: the tool does not pass through thin tissue, and no grasp begins by itself.
 #include "contact/servo_session.hpp"
 
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Two light hands that pinch a lobe and swing it.
-#include <palpate/contact/convex_tool.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/contact/tools.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

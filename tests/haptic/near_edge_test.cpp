@@ -1,5 +1,5 @@
 // Presses at sharp edges of a block: right within a tenth, or flagged.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include "haptic/sphere_press.hpp"
 

@@ -1,5 +1,5 @@
 // Presses where supports are near: thin layers on a fixed base, and beside fixed parts of the touched surface.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "haptic/sphere_press.hpp"

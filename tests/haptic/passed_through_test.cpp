@@ -2,7 +2,7 @@
 #include "contact/servo_session.hpp"
 
 #include <palpate/contact/tissue_group.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/allocation_counter.hpp>

@@ -1,6 +1,6 @@
 // The force of a frictionless tool depends on where it is, not on how it came there: all points that it would enter
 // have a row, also those between vertices that the mesh shows too deep.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include "contact/servo_session.hpp"
 

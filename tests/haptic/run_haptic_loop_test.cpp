@@ -1,11 +1,11 @@
 // The haptic loop with a mock device and a servo that is a spring behind a wall.
 #include <palpate/device/mock_device.hpp>
-#include <palpate/testing/open_gate.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/testing/device_laws.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 #include <palpate/testing/random.hpp>
 #include <chrono>

@@ -3,7 +3,7 @@
 
 #include "catch.hpp"
 
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/testing/random.hpp>
 
 #include <algorithm>

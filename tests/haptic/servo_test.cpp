@@ -3,8 +3,7 @@
 
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/recorder.hpp>
-#include <palpate/device/replay_device.hpp>
-#include <palpate/haptic/run_haptic_loop.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/testing/random.hpp>
 

@@ -1,7 +1,7 @@
 // The force of every tick against that of a contact problem that iterates to convergence.
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/tissue_group.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

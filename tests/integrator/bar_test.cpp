@@ -4,7 +4,7 @@
 #include "integrator/motions.hpp"
 #include "number_rows.hpp"
 
-#include <palpate/assembly/detail/linear_forces.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
 
 using namespace test;
 

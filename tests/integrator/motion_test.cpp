@@ -1,5 +1,5 @@
 // Explicit motion of a neo-Hookean block: conservation, refused arguments, extreme states.
-#include <palpate/assembly/detail/linear_forces.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
 
 #include <Eigen/Geometry>

@@ -7,7 +7,7 @@
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/allocation_counter.hpp>

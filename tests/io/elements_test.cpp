@@ -1,6 +1,6 @@
 // Quadratic and hexahedral elements in files.
 #include <palpate/io/detail/node_order.hpp>
-#include <palpate/io/gmsh.hpp>
+#include <palpate/io/read_mesh.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>

@@ -5,7 +5,8 @@
 
 #include <palpate/io/detail/gmsh_types.hpp>
 #include <palpate/io/detail/node_order.hpp>
-#include <palpate/io/detail/vtk_types.hpp>
+#include <palpate/io/detail/text_reader.hpp>
+#include <palpate/io/detail/vtk_cells.hpp>
 #include <palpate/io/write_msh.hpp>
 
 #include <algorithm>

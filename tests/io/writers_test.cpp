@@ -3,6 +3,7 @@
 #include "element/user_elements.hpp"
 
 #include <palpate/io/detail/numbers.hpp>
+#include <palpate/io/detail/text_reader.hpp>
 #include <palpate/io/surface_files.hpp>
 #include <palpate/io/write_msh.hpp>
 

@@ -1,5 +1,4 @@
 // Elimination orders, separators and trees against their definitions.
-#include <palpate/linear/detail/bipartite_cover.hpp>
 #include <palpate/linear/detail/cholesky_analysis.hpp>
 #include <palpate/linear/detail/elimination_tree.hpp>
 #include <palpate/linear/detail/flow_separator.hpp>

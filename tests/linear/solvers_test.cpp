@@ -1,5 +1,5 @@
 // Solvers against a dense reference in long double, on well-posed matrices.
-#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/linear/condition.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>

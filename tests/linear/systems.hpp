@@ -3,7 +3,7 @@
 #include "assembly/bodies.hpp"
 #include "local/closed_form.hpp"
 
-#include <palpate/linear/dense_conjugate_gradient.hpp>
+#include <palpate/linear/conjugate_gradient.hpp>
 
 #include <Eigen/QR>
 

@@ -1,7 +1,7 @@
 // The scenes of examples/live without a window: the same forces as a session without its parts, zero when it ends.
 #include "core/stage.hpp"
 
-#include <palpate/device/replay_device.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 
 #include "catch.hpp"

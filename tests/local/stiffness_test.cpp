@@ -1,7 +1,7 @@
 // Element stiffness: closed forms, rigid motions, invariance, and the element of the thesis.
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/tet10.hpp>
-#include <palpate/element/with_quadrature.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/isotropic.hpp>
 #include <palpate/testing/dense.hpp>
 

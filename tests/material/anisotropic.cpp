@@ -1,7 +1,7 @@
 // Orthotropic and transversely isotropic linear elasticity.
 #include <palpate/core/voigt.hpp>
 #include <palpate/material/linear_elastic.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 #include <palpate/testing/material_laws.hpp>
 
 #include <Eigen/LU>

@@ -1,7 +1,6 @@
 // Fibres under tension in a material without a direction.
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
 #include <palpate/testing/material_laws.hpp>
 

@@ -1,7 +1,6 @@
 // Large-strain materials against tables of closed forms (tests/data/oracle/README.md) and textbook formulas.
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 

@@ -1,7 +1,6 @@
 // Isotropic large-strain materials: common properties, and properties of each.
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>

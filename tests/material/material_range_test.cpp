@@ -2,14 +2,13 @@
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/detail/material_range.hpp>
-#include <palpate/material/detail/viscous_step.hpp>
 #include <palpate/material/fibre_reinforced.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
+#include <palpate/material/viscoelastic.hpp>
 
 #include "catch.hpp"
 

@@ -2,7 +2,6 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/testing/hyperelastic_laws.hpp>
 #include <palpate/testing/material_laws.hpp>

@@ -2,8 +2,8 @@
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/mesh/detail/element_search.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"

@@ -1,6 +1,6 @@
 #include "mesh_helpers.hpp"
 
-#include <palpate/mesh/generators_round.hpp>
+#include <palpate/mesh/generators.hpp>
 
 #include <fstream>
 #include <numbers>

@@ -3,7 +3,7 @@
 
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/mesh/generators_round.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/testing/mesh_laws.hpp>

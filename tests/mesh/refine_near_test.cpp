@@ -6,7 +6,7 @@
 #include <palpate/core/detail/box.hpp>
 #include <palpate/mesh/detail/element_search.hpp>
 #include <palpate/mesh/diagnose.hpp>
-#include <palpate/mesh/generators_round.hpp>
+#include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/refine.hpp>
 #include <palpate/mesh/refine_near.hpp>

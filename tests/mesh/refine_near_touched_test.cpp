@@ -2,7 +2,7 @@
 #include <palpate/element/tet10.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>
+#include <palpate/mesh/refine_near.hpp>
 #include <palpate/mesh/selection.hpp>
 
 #include "../refused.hpp"

@@ -1,5 +1,5 @@
 // Rigid motions as displacements.
-#include <palpate/mesh/detail/rigid_displacements.hpp>
+#include <palpate/mesh/detail/rigid_modes.hpp>
 #include <palpate/mesh/generators.hpp>
 
 #include <Eigen/LU>

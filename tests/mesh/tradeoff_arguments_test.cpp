@@ -5,7 +5,6 @@
 #include "../refused.hpp"
 
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/mesh/selection.hpp>
 
 #include <Eigen/Geometry>

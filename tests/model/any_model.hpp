@@ -1,6 +1,6 @@
 #pragma once
 
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

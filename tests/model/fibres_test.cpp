@@ -1,5 +1,5 @@
 // Fibres in a model and in the key of its cache.
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 #include <palpate/model/cache/detail/cache_key.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

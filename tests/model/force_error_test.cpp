@@ -1,7 +1,7 @@
 // The error bar of a force: measured at set-up, given in every tick, compared with finer meshes.
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators_box.hpp>

@@ -1,10 +1,10 @@
 // Dynamics against closed forms, conservation laws and another code.
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/io/detail/text_reader.hpp>
 #include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/neo_hookean_isochoric.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/mesh/generators.hpp>

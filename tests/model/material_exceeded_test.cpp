@@ -1,6 +1,6 @@
 // Tissue that is deformed beyond the range of its material is reported: by equilibria, and in every tick.
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>

@@ -1,5 +1,5 @@
 // The session program with motion by a quasi-Newton method.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 

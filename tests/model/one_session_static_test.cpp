@@ -1,5 +1,5 @@
 // The session program with linear statics.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include "one_session.hpp"

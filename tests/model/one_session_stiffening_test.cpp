@@ -1,5 +1,5 @@
 // The session program with stiffening tissue.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/model/static/stiffening.hpp>
 

@@ -1,6 +1,6 @@
 // Tissue at large strain near the tools, linear elsewhere, against tissue at large strain everywhere.
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/promote.hpp>

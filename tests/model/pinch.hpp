@@ -1,7 +1,7 @@
 // Two spheres that pinch a part of a body.
 #pragma once
 
-#include <palpate/contact/sphere_tool.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include <algorithm>

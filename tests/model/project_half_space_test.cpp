@@ -1,5 +1,5 @@
 // What meshes make of the compliance of a half-space.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

@@ -1,6 +1,6 @@
 // Tissue by a quasi-Newton method, against Newton's method and closed forms.
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/material/neo_hookean_logarithmic.hpp>
 #include <palpate/material/viscoelastic.hpp>

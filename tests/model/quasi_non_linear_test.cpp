@@ -1,11 +1,11 @@
 // Linear tissue that stiffens along curves measured on a non-linear one.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/moving/equilibrium.hpp>
-#include <palpate/model/static/detail/quasi_non_linear.hpp>
+#include <palpate/model/static/stiffening.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
 #include <Eigen/Cholesky>

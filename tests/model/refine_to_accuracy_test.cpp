@@ -3,7 +3,6 @@
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/refine_near.hpp>
 #include <palpate/model/static/linear_tissue.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>
 #include <palpate/model/static/refine_to_accuracy.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // Advice on element and mesh: really measured, the best within the budget, and reported when nothing is.
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/haptic_fe_model.hpp>

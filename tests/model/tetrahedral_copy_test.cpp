@@ -2,7 +2,7 @@
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/element/tet10.hpp>
-#include <palpate/element/tri3.hpp>
+#include <palpate/element/tet4.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/refine_near.hpp>

@@ -1,5 +1,5 @@
 // A deliberate violation of every law of the tissue law suite.
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 

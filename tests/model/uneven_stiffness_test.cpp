@@ -1,5 +1,5 @@
 // Soft parts beside stiff ones: every part comes to equilibrium, whatever the forces in the others.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/moving/equilibrium.hpp>

@@ -1,7 +1,7 @@
 // Relaxation, creep and motion of viscoelastic bodies, against closed forms (tests/data/oracle/README.md).
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/model/moving/equilibrium.hpp>

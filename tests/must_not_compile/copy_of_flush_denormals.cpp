@@ -1,6 +1,6 @@
 // expect: deleted
 // A copy would restore the mode twice.
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 
 using namespace palpate;
 

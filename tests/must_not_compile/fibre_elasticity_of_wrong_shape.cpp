@@ -1,6 +1,6 @@
 // expect: FibreMaterial
 // A 5 x 5 matrix is convertible to a 6 x 6 one in C++.
-#include <palpate/material/transversely_isotropic.hpp>
+#include <palpate/material/orthotropic.hpp>
 
 using namespace palpate;
 

@@ -1,7 +1,7 @@
 // expect: palpate: a cut changes the averages of smoothed elements
 #include <palpate/cut/cuttable.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 using namespace palpate;

@@ -1,6 +1,6 @@
 // expect: palpate: Smoothed and MeanDilatation average small strains
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/model/moving/implicit.hpp>
 

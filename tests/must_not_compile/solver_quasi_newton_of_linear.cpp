@@ -1,6 +1,6 @@
 // expect: palpate: QuasiNewton moves hyperelastic materials
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>

@@ -1,5 +1,5 @@
 // NAFEMS LE10: recovered stress at a point on an edge of the body, where the stress peaks.
-#include <palpate/io/gmsh.hpp>
+#include <palpate/io/read_mesh.hpp>
 #include <palpate/post/error_estimate.hpp>
 #include <palpate/post/stress.hpp>
 

@@ -1,6 +1,7 @@
 // Stress against closed forms, and against another code.
 #include <palpate/element/tet4.hpp>
-#include <palpate/io/gmsh.hpp>
+#include <palpate/io/detail/text_reader.hpp>
+#include <palpate/io/read_mesh.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
@@ -141,7 +142,7 @@ TEST_CASE("A displacement that is not finite gives stress that is not finite; a 
 
 TEST_CASE("Element stresses agree with another code", "[post][oracle]") {
   const std::string folder = PALPATE_TEST_DATA "/oracle/A_two_cubes/tet4/";
-  io::GmshNumbering ids;
+  io::MeshNumbering ids;
   const auto mesh = io::read_mesh<Tet4>(folder + "mesh_v22.msh", 1.0, &ids);
   Scene scene;
   scene.fix("fixed");

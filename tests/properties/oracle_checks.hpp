@@ -2,6 +2,8 @@
 
 #include "../../examples/solve_case/solve.hpp"
 
+#include <palpate/io/detail/text_reader.hpp>
+
 #include "catch.hpp"
 
 #include <filesystem>

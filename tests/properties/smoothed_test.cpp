@@ -1,4 +1,4 @@
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include "extremes/element_extremes.hpp"
 #include "properties/element_cases.hpp"

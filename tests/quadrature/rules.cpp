@@ -1,7 +1,5 @@
 #include <palpate/quadrature/gauss_legendre.hpp>
-#include <palpate/quadrature/tensor.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
-#include <palpate/quadrature/triangle.hpp>
+#include <palpate/quadrature/simplex.hpp>
 #include <palpate/testing/quadrature_laws.hpp>
 
 #include "catch.hpp"

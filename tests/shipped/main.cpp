@@ -5,7 +5,6 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/orthotropic.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/mesh/generators_box.hpp>
 
 #include <cstdio>

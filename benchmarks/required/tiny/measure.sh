@@ -68,7 +68,7 @@ row "a mesh only"
 row "a mesh only, umbrella header" -DTINY_UMBRELLA
 row "Tet4, Condensed<SelectiveInverse>" -DTINY_ELEMENT=Tet4 "-DTINY_SOLVER=Condensed<SelectiveInverse>"
 row "Tet4, Condensed<SelectiveInverseFloat>" -DTINY_ELEMENT=Tet4 "-DTINY_SOLVER=Condensed<SelectiveInverseFloat>"
-row "Smoothed<Tet4>, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element/smoothed.hpp>' \
+row "Smoothed<Tet4>, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element/wrappers.hpp>' \
   "-DTINY_ELEMENT=Smoothed<Tet4>" "-DTINY_SOLVER=Condensed<SelectiveInverse>"
 row "Tet10, Condensed<SelectiveInverse>" '-DTINY_ELEMENT_HEADER=<palpate/element/tet10.hpp>' -DTINY_ELEMENT=Tet10 \
   -DTINY_PROMOTE "-DTINY_SOLVER=Condensed<SelectiveInverse>"

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/core/platform.hpp>
-#include <palpate/core/spsc_ring.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/device/recorder.hpp>
 
 #include <utility>

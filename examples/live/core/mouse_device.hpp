@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/core/spsc_ring.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/device/mock_device.hpp>
 
 namespace live {

@@ -1,7 +1,7 @@
 // Draws the organ beside the window, which never waits for it.
 #pragma once
 
-#include <palpate/core/triple_buffer.hpp>
+#include <palpate/core/thread_exchange.hpp>
 
 #include "organ.hpp"
 

@@ -1,9 +1,9 @@
 // What a scene of the window consists of. Every scene is a file of its own in ../scenes.
 #pragma once
 
+#include <palpate/contact/tools.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/haptic/session_options.hpp>
-#include <palpate/haptic/tool_list.hpp>
+#include <palpate/haptic/haptic_session.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 

@@ -2,7 +2,7 @@
 //
 // Explicit dynamics: no matrix and no factorisation, but inertia, waves, and loads that change with time. A soft sphere
 // is squeezed seventy times a minute; a finger on it is lifted by every beat.
-#include <palpate/mesh/generators_round.hpp>
+#include <palpate/mesh/generators.hpp>
 
 #include "scenes.hpp"
 

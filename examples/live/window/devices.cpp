@@ -7,7 +7,7 @@
 #endif
 #include <palpate/core/setup_error.hpp>
 #include <palpate/device/placement.hpp>
-#include <palpate/device/replay_device.hpp>
+#include <palpate/device/recorder.hpp>
 
 namespace live {
 

@@ -3,14 +3,12 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/constant_geometry.hpp>
 #include <palpate/assembly/detail/node_elements.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
-#include <palpate/concepts/assembler.hpp>
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/linear_solver.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/lanes.hpp>
-#include <palpate/core/detail/thread_ranges.hpp>
 #include <palpate/core/executor.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>

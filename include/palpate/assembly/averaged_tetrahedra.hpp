@@ -1,7 +1,6 @@
 // Linear tetrahedra without volumetric locking: the change of volume is averaged over neighbours.
 #pragma once
 
-#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>

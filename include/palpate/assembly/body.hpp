@@ -2,12 +2,13 @@
 #pragma once
 
 #include <palpate/concepts/element.hpp>
-#include <palpate/assembly/detail/region_materials.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
+#include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/local/geometry.hpp>
 #include <palpate/mesh/detail/fibres.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
@@ -39,6 +40,22 @@ struct Body {
 
 /// Throws with the id of one element.
 [[noreturn]] PALPATE_COLD void raise_element(SetupErrorKind kind, Index e, const char* what);
+
+/// Elements with one integration point, so constant gradients (Tet4).
+template <class E>
+concept ConstantGradient = Element<E> && E::Quadrature::points.size() == 1;
+
+/// Geometry of element e [1/m, m^3]. Throws inverted_element for a negative volume, non_finite for a volume that is
+/// zero or NaN.
+template <ConstantGradient E>
+PointGeometry<E> constant_geometry(const Mesh<E>& mesh, Index e) {
+  constexpr auto point = E::Quadrature::points[0];
+  const PointGeometry<E> g = point_geometry<E>(element_nodes<E>(mesh, e), reference_point(point), point.weight);
+  if (g.volume < 0.0) raise_element(SetupErrorKind::inverted_element, e, "has a negative volume");
+  if (!(g.volume > 0.0) || !all_finite(g.gradient))
+    raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
+  return g;
+}
 
 /// Throws for a material that fails its own check(); the error names the region by number and name.
 template <Material M, MeshView Mesh>

@@ -14,8 +14,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/detail/material_range.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/material/viscoelastic.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/smoothed_strain.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>

@@ -7,11 +7,13 @@
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -26,7 +28,9 @@ class MassMatrix {
 
   Index size() const noexcept { return 3 * pattern_.rows(); }
   const BlockPattern& pattern() const noexcept { return pattern_; }
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return values_.size() * (sizeof(double) + sizeof(NodeId)) + pattern_.row_start.size() * sizeof(Index);
+  }
 
   /// Mass of a pair of nodes at a position given by the pattern [kg].
   double& operator[](Index position) noexcept { return values_[static_cast<std::size_t>(position)]; }
@@ -43,7 +47,10 @@ class MassMatrix {
 namespace detail {
 
 /// Throws for an invalid mass: an inverted element, or numbers that are not finite.
-void require_mass(double volume, double mass, Index e);
+inline void require_mass(double volume, double mass, Index e) {
+  if (!std::isfinite(mass)) raise_element(SetupErrorKind::non_finite, e, "has a mass that is not finite");
+  if (!(volume > 0.0)) raise_element(SetupErrorKind::inverted_element, e, "has no positive volume");
+}
 
 }  // namespace detail
 
@@ -105,8 +112,28 @@ void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditi
       }
 }
 
-}}  // namespace palpate
+inline void MassMatrix::apply(const VectorX& x, VectorX& y) const noexcept {
+  y.setZero();
+  for (Index i = 0; i < pattern_.rows(); ++i) {
+    const Index last = pattern_.row_start[static_cast<std::size_t>(i) + 1] - 1;
+    const double x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2], diagonal = (*this)[last];
+    double y0 = diagonal * x0, y1 = diagonal * x1, y2 = diagonal * x2;
+    for (Index p = pattern_.row_start[static_cast<std::size_t>(i)]; p < last; ++p) {
+      const Index j = pattern_.column[static_cast<std::size_t>(p)];
+      const double m = (*this)[p];
+      const double* const xj = x.data() + 3 * j;
+      y0 += m * xj[0];
+      y1 += m * xj[1];
+      y2 += m * xj[2];
+      double* const yj = y.data() + 3 * j;
+      yj[0] += m * x0;
+      yj[1] += m * x1;
+      yj[2] += m * x2;
+    }
+    y[3 * i] += y0;
+    y[3 * i + 1] += y1;
+    y[3 * i + 2] += y2;
+  }
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/mass_matrix.ipp>
-#endif
+}}  // namespace palpate

@@ -9,7 +9,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/integration_points.hpp>
 #include <palpate/mesh/mesh.hpp>
 

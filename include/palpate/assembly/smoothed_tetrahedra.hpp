@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/assembly/detail/node_elements.hpp>
-#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/strain_averages.hpp>
 #include <palpate/assembly/detail/strain_domains.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
@@ -11,13 +10,12 @@
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/lane_roots.hpp>
 #include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/detail/split_elasticity.hpp>
 #include <palpate/mesh/quality.hpp>
 

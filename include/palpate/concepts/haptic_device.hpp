@@ -1,5 +1,5 @@
-// Concept of a haptic device, and the types exchanged between device and tick. Plain numbers only: these types cross
-// library boundaries.
+// Concepts of a haptic device and of the servo that computes its forces, and the types exchanged between them. Plain
+// numbers only: these types cross library boundaries.
 #pragma once
 
 #include <palpate/concepts/force_error.hpp>
@@ -8,6 +8,8 @@
 #include <palpate/core/types.hpp>
 
 #include <array>
+#include <concepts>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -79,6 +81,14 @@ concept HapticDevice = requires(D& device, const D& constant, const GatedForce& 
   { constant.limits() } noexcept -> std::same_as<DeviceLimits>;
   {device.start()};
   { device.stop() } noexcept;
+};
+
+/// Computes the forces on all tools from the states of all tools, once per tick. `tick` receives one state per tool and
+/// returns one force per tool in the same order; the span stays valid until the next tick. It never throws, blocks,
+/// allocates or locks. The result is sent to the device, so the last step of `tick` is a force gate.
+template <class S>
+concept Servo = requires(S& servo, std::span<const ToolState> tools) {
+  { servo.tick(tools) } noexcept -> std::same_as<std::span<const GatedForce>>;
 };
 
 }}  // namespace palpate

@@ -9,6 +9,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -23,6 +25,10 @@ concept Material = std::copyable<M> && requires(const M& m) {
   { m.density } -> std::convertible_to<double>;
   { m.check() } -> std::same_as<std::optional<SetupProblem>>;
 };
+
+/// One material per region, by name; the name `everywhere` applies to all regions that are not named.
+template <Material M>
+using RegionMaterials = std::vector<std::pair<std::string, M>>;
 
 /// A material with constant stiffness: `elasticity()` is the symmetric positive definite 6 x 6 matrix [Pa] in the order
 /// of core/voigt.hpp. Laws: testing/material_laws.hpp.

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <palpate/contact/detail/contact_rows.hpp>
-#include <palpate/contact/detail/proxy_motion.hpp>
 #include <palpate/contact/detail/point_levels.hpp>
+#include <palpate/contact/detail/proxy_motion.hpp>
+#include <palpate/contact/force_accuracy.hpp>
 #include <palpate/contact/grasp.hpp>
-#include <palpate/contact/linear_model_error.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -54,8 +54,6 @@ class ContactProblem {
   std::span<const VertexForce> vertex_forces() const noexcept { return displacement_.forces(); }
   /// The same on the contact points. O(contacts).
   std::span<const PointForce> point_forces() noexcept;
-  /// Whether a contact point is near a tool's sphere.
-  bool is_near(int tool) const noexcept { return candidates_.has_any(tool); }
   /// The closest point of the touchable surface as the forces of the last tick deform it. `distance` [m] is that of the
   /// resting surface. Visits the triangles that the forces may have moved there; no allocation.
   ContactSurface::Closest closest(const TissueView& tissue, const Vector3& position, double distance) noexcept;

@@ -1,14 +1,15 @@
-// The touchable surface as the contact code uses it.
+// The touchable surface as the contact code uses it, and which of its facets are too long for a tool.
 #pragma once
 
 #include <palpate/concepts/vertex_force.hpp>
 #include <palpate/contact/detail/bvh.hpp>
 #include <palpate/contact/force_accuracy.hpp>
-#include <palpate/contact/linear_model_error.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -120,7 +121,6 @@ class ContactSurface {
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
   /// Sets what is known about the other errors of a linear model.
   void set_model_error(LinearModelError error) noexcept { model_error_ = std::move(error); }
-  const LinearModelError& model_error() const noexcept { return model_error_; }
   /// Sets both for a surface that joins those of several bodies, whose vertices follow each other. Allocates when there
   /// are more bodies than before; for set-up.
   void set_known_errors(std::span<const KnownErrors> bodies) { bodies_.assign(bodies.begin(), bodies.end()); }
@@ -221,6 +221,30 @@ class ContactSurface {
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
 };
+
+/// Facets that do not show the dent of a sphere of this radius. Where the half-space is known, contact points have the
+/// dent that is missing (SubfacetCompliance); elsewhere the contact is too stiff. docs/contact.md.
+struct CoarseFacetReport {
+  double radius = 0.0;         ///< of the smallest tool [m]
+  double longest = 0.0;        ///< largest ContactSurface::facet_length [m]
+  std::vector<int> triangles;  ///< numbers of the triangles that are too long, ascending
+  int unknown_materials = 0;   ///< how many of them have no known material
+};
+
+/// Checks every triangle once. Allocates; for set-up.
+inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius) {
+  constexpr double coarse = 0.6;  // radius per length from which facets show the dent
+  CoarseFacetReport report;
+  report.radius = radius;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
+    const double length = surface.facet_length(t);
+    report.longest = std::max(report.longest, length);
+    if (!(radius < coarse * length)) continue;
+    report.triangles.push_back(t);
+    report.unknown_materials += surface.material(t).modulus == 0.0;
+  }
+  return report;
+}
 
 }}  // namespace palpate
 

@@ -1,7 +1,7 @@
 // Several tissues in one scene, touched by the same tools.
 #pragma once
 
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
 #include <Eigen/Geometry>

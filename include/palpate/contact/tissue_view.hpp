@@ -1,7 +1,6 @@
 // A type-erased reference to a tissue.
 #pragma once
 
-#include <palpate/concepts/detail/explain_tissue.hpp>
 #include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>

@@ -3,7 +3,6 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/small_matrix.hpp>
-#include <palpate/core/vector_types.hpp>
 
 #include <concepts>
 #include <limits>

@@ -3,7 +3,7 @@
 
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
-#include <palpate/model/detail/admit_body.hpp>
+#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>
 #include <palpate/model/rendering/visual_surface.hpp>

@@ -9,10 +9,10 @@
 #include <palpate/cut/detail/cut_half_space.hpp>
 #include <palpate/cut/detail/cut_motion.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
+#include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
-#include <palpate/cut/detail/element_loads.hpp>
 #include <palpate/cut/detail/slit_sides.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>
 #include <palpate/model/detail/element_body.hpp>

@@ -11,7 +11,7 @@
 #include <palpate/cut/cut_parameters.hpp>
 #include <palpate/cut/detail/cut_preparation.hpp>
 #include <palpate/cut/detail/cut_process.hpp>
-#include <palpate/core/triple_buffer.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/model_base.hpp>
 
@@ -192,8 +192,6 @@ class CuttableTissue : public ModelBase {
   void report_failed(bool failed) noexcept { served_.report_failed(failed); }
   /// One servo at a time: a cut moves its contacts to the new surface.
   TissueClaim& claim() noexcept { return claim_; }
-  /// Number of rows of the correction that a tick currently adds.
-  Index open_rank() const noexcept { return view().step->rank(); }
 
  protected:
   explicit CuttableTissue(const SetupOptions& options) : ModelBase(options) {

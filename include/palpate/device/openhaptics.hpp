@@ -19,7 +19,7 @@
 #error "palpate/device/openhaptics.hpp: include <HD/hd.h> first, or define PALPATE_INCLUDE_OPENHAPTICS"
 #endif
 
-#include <palpate/concepts/servo.hpp>
+#include <palpate/concepts/haptic_device.hpp>
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/device/detail/sdk_state.hpp>

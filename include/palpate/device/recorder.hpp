@@ -1,27 +1,19 @@
-// Records the data exchanged between a device and the tick, and writes it to a file that ReplayDevice plays.
+// Records the data exchanged between a device and the tick, writes it to a file, and plays it: bitwise the same input
+// in every run.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/device/render_limits.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
-#include <version>
-
-#ifndef __cpp_lib_to_chars
-#include <locale>
-#include <sstream>
-#endif
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -48,6 +40,10 @@ inline constexpr std::string_view recording_header_without_errors =
 /// Writes a recording as CSV: every number reads back bitwise equal (a NaN as a NaN), in any locale. Throws
 /// SetupError(bad_file) when the file cannot be written.
 void write_recording(const std::string& path, std::span<const RecordedTick> ticks);
+
+/// Reads a file written by write_recording, also by an earlier version, which recorded no present time, no starts and
+/// perhaps no errors of forces. Throws SetupError(bad_file) naming file and line.
+std::vector<RecordedTick> read_recording(const std::string& path);
 
 /// A HapticDevice that forwards all calls to another one and keeps the last `capacity` ticks, also of several starts,
 /// which are marked. The memory is allocated and touched at construction; a tick copies 180 bytes into it. The device
@@ -124,6 +120,45 @@ class Recorder {
   std::uint64_t count_ = 0;  ///< reads so far
   bool starting_ = false;    ///< the next read is the first of a start
   bool unanswered_ = false;  ///< nothing was written since the last read
+};
+
+/// A HapticDevice that returns the states of a recording one by one, including time stamps and ages, and the last one
+/// as invalid after the end of the recording. A pose recorded without ToolState::now counts as measured when it is
+/// read. Where the recorded device was started again, a HapticSession begins again, too. Forces are rendered by no
+/// motors; see last_force() and recorded().
+class ReplayDevice {
+ public:
+  /// Throws SetupError(bad_argument) when the recording is empty.
+  explicit ReplayDevice(std::vector<RecordedTick> ticks, const DeviceLimits& limits = {});
+  /// Plays a file; throws as read_recording.
+  explicit ReplayDevice(const std::string& path, const DeviceLimits& limits = {})
+      : ReplayDevice(read_recording(path), limits) {}
+
+  ToolState read() noexcept;
+  Status write(const GatedForce& force) noexcept { return rendered_.render(force); }
+  DeviceLimits limits() const noexcept { return rendered_.limits(); }
+  void start() noexcept { rendered_.start(); }
+  void stop() noexcept { rendered_.stop(); }
+
+  void rewind() noexcept {
+    next_ = 0;
+    last_time_ = 0.0;
+  }
+  /// Whether the state read last was the first one after a start of the recorded device, and not the first of the
+  /// recording: a HapticSession then resets its servo, as its start did.
+  bool restarts() const noexcept { return restarts_; }
+  bool finished() const noexcept { return next_ == ticks_.size(); }  ///< every state was read
+  std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
+  const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered now
+  const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
+  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] largest force rendered so far
+
+ private:
+  std::vector<RecordedTick> ticks_;
+  std::size_t next_ = 0;
+  bool restarts_ = false;
+  double last_time_ = 0.0;  // [s] of the last valid state since a start
+  RenderLimits rendered_;
 };
 
 }}  // namespace palpate

@@ -1,17 +1,45 @@
-// The eight-node hexahedron.
+// The eight-node hexahedron and its face, the four-node quadrilateral.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/detail/matrix_of_rows.hpp>
-#include <palpate/element/quad4.hpp>
-#include <palpate/quadrature/tensor.hpp>
+#include <palpate/quadrature/gauss_legendre.hpp>
 
 #include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Bilinear quadrilateral on [-1, 1]^2 with nodes (-1, -1), (1, -1), (1, 1), (-1, 1): N = (1 + s u)(1 + t v) / 4.
+struct Quad4 {
+  static constexpr int nodes = 4;
+  static constexpr std::array<std::array<int, 3>, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
+  using Quadrature = QuadrilateralRule<2>;
+
+  static Eigen::Vector4d shape(const Eigen::Vector2d& xi) noexcept {
+    const double u = xi[0], v = xi[1];
+    return {0.25 * ((1 - u) * (1 - v)), 0.25 * ((1 + u) * (1 - v)), 0.25 * ((1 + u) * (1 + v)),
+            0.25 * ((1 - u) * (1 + v))};
+  }
+
+  static Eigen::Matrix<double, 4, 2> gradient(const Eigen::Vector2d& xi) noexcept;
+
+  static Eigen::Matrix<double, 4, 2> reference_nodes() noexcept {
+    return detail::matrix_of_rows<4, 2>({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+  }
+};
+
+static_assert(TriangulatedFace<Quad4>);
+
+inline Eigen::Matrix<double, 4, 2> Quad4::gradient(const Eigen::Vector2d& xi) noexcept {
+  const double u = xi[0], v = xi[1];
+  return detail::matrix_of_rows<4, 2>({{0.25 * (v - 1), 0.25 * (u - 1)},
+                                       {0.25 * (1 - v), 0.25 * (-1 - u)},
+                                       {0.25 * (1 + v), 0.25 * (1 + u)},
+                                       {0.25 * (-1 - v), 0.25 * (1 - u)}});
+}
 
 /// Trilinear hexahedron on [-1, 1]^3: bottom (w = -1) counter-clockwise seen from above, then top; 2 x 2 x 2 points.
 /// The standard, fully integrated brick. It locks near incompressibility, and results above `locking_poisson_ratio` are
@@ -31,7 +59,10 @@ struct Hex8 {
 
   static Eigen::Matrix<double, 8, 3> gradient(const Vector3& xi) noexcept;
 
-  static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept;
+  static Eigen::Matrix<double, 8, 3> reference_nodes() noexcept {
+    return detail::matrix_of_rows<8, 3>(
+        {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
+  }
 };
 
 static_assert(Element<Hex8>);
@@ -61,11 +92,6 @@ inline Eigen::Matrix<double, 8, 3> Hex8::gradient(const Vector3& xi) noexcept {
     g.coeffRef(4 + a, 2) = 0.5 * n[a];
   }
   return g;
-}
-
-inline Eigen::Matrix<double, 8, 3> Hex8::reference_nodes() noexcept {
-  return detail::matrix_of_rows<8, 3>(
-      {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
 }
 
 }}  // namespace palpate

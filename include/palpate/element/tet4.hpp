@@ -1,17 +1,35 @@
-// The four-node tetrahedron.
+// The four-node tetrahedron and its face, the three-node triangle.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/detail/matrix_of_rows.hpp>
-#include <palpate/element/tri3.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 #include <array>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Linear triangle on the unit triangle (0, e1, e2): N = (1 - u - v, u, v).
+struct Tri3 {
+  static constexpr int nodes = 3;
+  static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
+  using Quadrature = TriangleRule<2>;
+
+  static Eigen::Vector3d shape(const Eigen::Vector2d& xi) noexcept { return {1.0 - xi[0] - xi[1], xi[0], xi[1]}; }
+
+  static Eigen::Matrix<double, 3, 2> gradient(const Eigen::Vector2d&) noexcept {
+    return detail::matrix_of_rows<3, 2>({{-1, -1}, {1, 0}, {0, 1}});
+  }
+
+  static Eigen::Matrix<double, 3, 2> reference_nodes() noexcept {
+    return detail::matrix_of_rows<3, 2>({{0, 0}, {1, 0}, {0, 1}});
+  }
+};
+
+static_assert(TriangulatedFace<Tri3>);
 
 /// Linear tetrahedron on the unit tetrahedron (0, e1, e2, e3): N = (1 - u - v - w, u, v, w). The thesis (3.3.2) uses a
 /// regular reference tetrahedron instead; the element is the same, its printed shape functions are corrected in
@@ -26,25 +44,19 @@ struct Tet4 {
   using Quadrature = TetrahedronRule<1>;
   using MassQuadrature = TetrahedronRule<2>;
 
-  static Eigen::Vector4d shape(const Vector3& xi) noexcept;
+  static Eigen::Vector4d shape(const Vector3& xi) noexcept {
+    return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
+  }
 
-  static Eigen::Matrix<double, 4, 3> gradient(const Vector3&) noexcept;
+  static Eigen::Matrix<double, 4, 3> gradient(const Vector3&) noexcept {
+    return detail::matrix_of_rows<4, 3>({{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  }
 
-  static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept;
+  static Eigen::Matrix<double, 4, 3> reference_nodes() noexcept {
+    return detail::matrix_of_rows<4, 3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  }
 };
 
 static_assert(Element<Tet4>);
-
-inline Eigen::Vector4d Tet4::shape(const Vector3& xi) noexcept {
-  return {1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]};
-}
-
-inline Eigen::Matrix<double, 4, 3> Tet4::gradient(const Vector3&) noexcept {
-  return detail::matrix_of_rows<4, 3>({{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-}
-
-inline Eigen::Matrix<double, 4, 3> Tet4::reference_nodes() noexcept {
-  return detail::matrix_of_rows<4, 3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-}
 
 }}  // namespace palpate

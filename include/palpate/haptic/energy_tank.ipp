@@ -9,6 +9,40 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE PassivityObserver::PassivityObserver(int delay) noexcept
+    : delay_(static_cast<std::size_t>(std::clamp(delay, 0, 32))) {
+  forces_.fill(Vector3::Zero());
+}
+
+PALPATE_INLINE PassivityObserver::Step PassivityObserver::moved(const Vector3& position, double time) noexcept {
+  Step step;
+  const Vector3 path = position - last_;
+  const double work = acting().dot(path), squared_path = path.squaredNorm(), dt = time - last_time_;
+  if (known_ && std::isfinite(work) && std::isfinite(squared_path)) {
+    step.work = work;
+    step.squared_path = squared_path;
+    if (dt > 0.0 && std::isfinite(dt)) step.time = dt;
+    add(work);
+  }
+  known_ = all_finite(position);
+  last_ = position;
+  last_time_ = time;
+  return step;
+}
+
+PALPATE_INLINE void PassivityObserver::gave(const Vector3& force) noexcept {
+  newest_ = (newest_ + 1) % forces_.size();
+  forces_[newest_] = force;
+}
+
+PALPATE_INLINE const Vector3& PassivityObserver::acting() const noexcept {
+  return forces_[(newest_ + forces_.size() - delay_) % forces_.size()];
+}
+
+PALPATE_INLINE void PassivityObserver::add(double work) noexcept {
+  if (std::isfinite(given_ + work)) given_ += work;
+}
+
 PALPATE_INLINE EnergyLimits EnergyLimits::from(const DeviceLimits& device) {
   EnergyLimits limits;
   limits.damping = 0.5 * device.stiffness / device.rate;
@@ -44,14 +78,6 @@ PALPATE_INLINE void EnergyTank::rotated(double work) noexcept {
   if (!std::isfinite(work)) return;
   observer_.moved_by(work);
   level_ = std::clamp(level_ - work, -limits_.allowance, limits_.capacity);
-}
-
-PALPATE_INLINE void EnergyTank::gave(const Vector3& force) noexcept {
-  observer_.gave(force);
-}
-
-PALPATE_INLINE void EnergyTank::forget() noexcept {
-  observer_.forget();
 }
 
 PALPATE_INLINE void EnergyTank::reset() noexcept {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/core/platform.hpp>
-#include <palpate/core/realtime.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/detail/stamp_clock.hpp>
 #include <palpate/haptic/haptic_loop.hpp>

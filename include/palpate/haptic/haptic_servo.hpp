@@ -1,18 +1,18 @@
 // One haptic session: tools against a tissue, one force per tool and tick.
 #pragma once
 
-#include <palpate/concepts/servo.hpp>
-#include <palpate/contact/coarse_facet_report.hpp>
+#include <palpate/concepts/haptic_device.hpp>
 #include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/contact_surface.hpp>
 #include <palpate/contact/detail/blade_cut.hpp>
 #include <palpate/contact/tissue_view.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
-#include <palpate/core/triple_buffer.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/haptic/detail/tool_input.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
-#include <palpate/haptic/tool_list.hpp>
 
 #include <string>
 #include <vector>
@@ -92,11 +92,9 @@ class HapticServo {
   /// tick's own thread.
   void release() noexcept { tissue_.end_tick({}, {}); }
 
-  /// Largest number of contacts of all tools, from ServoOptions::contact. Of more, evenly spread ones are kept
-  /// (degraded_model).
-  int contact_capacity() const noexcept { return problem_.capacity(); }
-  /// How much force that costs, roughly: penetration of the deepest point left out in the last tick, relative to the
-  /// deepest push. For the tick's own thread.
+  /// How much force it costs, roughly, that of more contacts than ServoOptions::contact allows only evenly spread ones
+  /// are kept (degraded_model): penetration of the deepest point left out in the last tick, relative to the deepest
+  /// push. For the tick's own thread.
   double missing_depth() const noexcept { return problem_.missing_depth(); }
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }

@@ -3,7 +3,7 @@
 
 #include <palpate/contact/detail/blade_inside.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/haptic_servo.hpp>

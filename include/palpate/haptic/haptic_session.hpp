@@ -1,20 +1,36 @@
-// Devices, tools and a tissue in one object: everything between a hand and a model.
+// Devices, tools and a tissue in one object, with its options: everything between a hand and a model.
 #pragma once
 
-#include <palpate/haptic/detail/loop_device.hpp>
+#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
-#include <palpate/haptic/loop_options.hpp>
 #include <palpate/haptic/loop_report.hpp>
-#include <palpate/haptic/session_options.hpp>
+#include <palpate/haptic/servo_options.hpp>
 
 #include <memory>
 #include <tuple>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-namespace detail {
-class HapticLoop;
-}
+/// Everything is optional: defaults of force limits, stiffness and rate are each device's limits(). A given value is
+/// valid for all tools and may be lower than the devices allow, not higher.
+struct SessionOptions {
+  std::optional<double> rate{};                  ///< [1/s] default: that of the slowest device
+  std::optional<double> coupling_stiffness{};    ///< [N/m] between proxy and device; default: that of each device,
+                                                 ///< reduced in proportion at a lower rate
+  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations
+  std::optional<ForceLimits> force_limits{};     ///< default ForceLimits::from(each device, rate)
+  ContactParameters contact{};                   ///< includes friction
+  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
+  bool corrected_force = false;     ///< whether ForceError::expected is subtracted from the force, where its
+                                    ///< bound is at most a fifth of the force, in part up to two fifths
+  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
+  bool limit_energy = false;        ///< an EnergyTank per tool, EnergyLimits::from its device
+};
+
+/// The options of a servo for tools on these devices, one each. Throws bad_argument (ids: the device; value and
+/// threshold) when there is not one device per tool, for a rate above a device's, and for a coupling or rotational
+/// stiffness, force, torque or continuous force above that of a device, or force limits for another rate.
+ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools, const SessionOptions& options);
 
 /// One or more devices with a tool each, one tissue, one servo and one loop. Force limits, coupling stiffness and rate
 /// are those of each device's limits(); the loop and the servo have one rate. State number i, read from device i, moves
@@ -62,8 +78,8 @@ class HapticSession {
   LoopReport stop();
 
   /// Whether the haptic thread ticks: false after its duration has ended, although only stop() stops the devices.
-  bool running() const noexcept;
-  LoopProgress progress() const noexcept;
+  bool running() const noexcept { return loop_->is_running(); }
+  LoopProgress progress() const noexcept { return loop_->progress(); }
   /// Newest snapshot; never waits. Valid until the next call.
   const ServoSnapshot& snapshot() noexcept { return servo_.read_snapshot(); }
 

@@ -2,12 +2,51 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/haptic/haptic_loop.hpp>
 #include <palpate/haptic/haptic_session.hpp>
+
+#include <cmath>
+#include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
+
+/// Refuses values above a device's limit, and NaN.
+class WithinDevice {
+ public:
+  explicit WithinDevice(std::size_t number) noexcept : number_(static_cast<std::int64_t>(number)) {}
+
+  void require(double value, double most, const char* what, const char* unit, const char* hint) const {
+    if (value <= most * (1.0 + 1e-9)) return;
+    SetupProblem problem;
+    problem.what = std::string("a ") + what + " of " + number(value) + ' ' + unit + " exceeds the limit of device " +
+                   std::to_string(number_) + ", " + number(most) + ' ' + unit;
+    problem.hint = hint;
+    problem.value = value;
+    problem.threshold = most;
+    problem.set_ids({&number_, 1});
+    raise(std::move(problem));
+  }
+  void require(const ForceLimits& forces, const DeviceLimits& device) const {
+    const char* const hint = "Start from ForceLimits::from(device.limits()), and reduce values as needed";
+    require(forces.peak_force, device.peak_force, "peak force", "N", hint);
+    require(forces.continuous_force, device.continuous_force, "continuous force", "N", hint);
+    require(forces.peak_torque, device.peak_torque, "peak torque", "N m", hint);
+  }
+
+ private:
+  std::int64_t number_;
+};
+
+inline void require_period(const ForceLimits& forces, double rate) {
+  if (std::abs(forces.period * rate - 1.0) <= 1e-6) return;
+  SetupProblem problem;
+  problem.what = "force limits for a period of " + number(forces.period) + " s in a session of " + number(rate) + " Hz";
+  problem.hint = "Start from ForceLimits::from(device.limits(), rate)";
+  problem.value = forces.period;
+  problem.threshold = 1.0 / rate;
+  raise(std::move(problem));
+}
 
 inline std::vector<DeviceLimits> limits_of(const std::vector<LoopDevice>& devices) {
   std::vector<DeviceLimits> all;
@@ -30,6 +69,40 @@ inline LoopServo session_servo(HapticServo& servo) noexcept {
 }
 
 }  // namespace detail
+
+PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools,
+                                          const SessionOptions& options) {
+  if (devices.size() != tools)
+    raise(SetupErrorKind::bad_argument,
+          std::to_string(tools) + " tools for " + std::to_string(devices.size()) + " devices",
+          "Give one tool per device, in the same order");
+  ServoOptions o;
+  o.devices = devices;
+  o.rate = options.rate;
+  o.rate = o.tick_rate();
+  const double rate = *o.rate;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const detail::WithinDevice within(i);
+    const DeviceLimits& device = devices[i];
+    within.require(rate, device.rate, "rate", "Hz", "Leave it out, or serve the device more slowly");
+    if (options.coupling_stiffness)
+      within.require(*options.coupling_stiffness, detail::stable_at(rate, device, device.stiffness),
+                     "coupling stiffness", "N/m", "Leave it out; HapticServo accepts a stiffer one, for verification");
+    if (options.rotational_stiffness && device.peak_torque > 0.0)
+      within.require(*options.rotational_stiffness, detail::stable_at(rate, device, device.rotational_stiffness),
+                     "rotational stiffness", "N m/rad", "Leave it out");
+    if (options.force_limits) within.require(*options.force_limits, device);
+  }
+  if (options.force_limits) detail::require_period(*options.force_limits, rate);
+  o.coupling_stiffness = options.coupling_stiffness;
+  o.rotational_stiffness = options.rotational_stiffness;
+  o.force_limits = options.force_limits;
+  o.contact = options.contact;
+  o.stale_tissue_after = options.stale_tissue_after;
+  o.corrected_force = options.corrected_force;
+  o.grasp_buttons = options.grasp_buttons;
+  return o;
+}
 
 PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue,
                                             const ToolList& tools, const SessionOptions& options)
@@ -72,13 +145,6 @@ PALPATE_INLINE LoopReport HapticSession::stop() {
   servo_.release();
   report.notes = servo_.notes();
   return report;
-}
-
-PALPATE_INLINE bool HapticSession::running() const noexcept {
-  return loop_->is_running();
-}
-PALPATE_INLINE LoopProgress HapticSession::progress() const noexcept {
-  return loop_->progress();
 }
 
 }}  // namespace palpate

@@ -1,16 +1,53 @@
-// Report of a haptic loop.
+// What goes into a haptic loop and what comes out: options, progress, real-time privileges, report.
 #pragma once
 
 #include <palpate/concepts/force_error.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
-#include <palpate/haptic/detail/realtime_thread.hpp>
+#include <palpate/core/types.hpp>
 #include <palpate/haptic/duration_histogram.hpp>
 
+#include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Progress of a loop.
+struct LoopProgress {
+  double elapsed = 0.0;   ///< [s] since the start
+  double fraction = 0.0;  ///< of its duration, 0 ... 1; 0 without one
+  std::uint64_t ticks = 0;
+  double force = 0.0;  ///< [N] of the last tick, the longest of all devices
+};
+
+/// The rate is not an option: a loop runs at the rate of its devices, or of the session that it belongs to.
+struct LoopOptions {
+  double duration = infinity;  ///< [s]; without one a loop runs until it is stopped or `progress` ends it
+  bool paced = true;           ///< false: rate * duration ticks as fast as they go, for devices in simulated time
+  bool real_time = false;      ///< request SCHED_FIFO and locked memory; not if unpaced: it would starve other threads
+  double force_error = 0.1;    ///< largest bound of ForceError, relative to the force, that the report accepts
+  int cpu = -1;                ///< pin the thread to this processor
+  /// Called at most 10 times per second, in the caller's thread; false ends the loop.
+  std::function<bool(const LoopProgress&)> progress{};
+};
+
+/// What was requested from the operating system and what it granted. Memory stays locked after the loop: unlocking
+/// could undo a lock of the caller.
+struct RealtimeGrant {
+  bool requested = false;
+  bool fifo = false;           ///< SCHED_FIFO, priority 50; on Windows time-critical priority
+  bool memory_locked = false;  ///< the pages mapped at the start
+  int cpu = -1;                ///< the processor to which the thread is pinned
+  std::string refusals;        ///< one sentence per refusal, with the system's reason
+};
+
+namespace detail {
+/// Requests for this thread what the options specify. Refusals are in the grant.
+RealtimeGrant request_realtime(const LoopOptions& options);
+}  // namespace detail
 
 /// The errors of the contact forces of a loop, as GatedForce::error has them. A tick is in contact with a tool if its
 /// contact force is not zero.

@@ -3,8 +3,8 @@
 
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/contact/contact.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/haptic/force_gate.hpp>
-#include <palpate/haptic/tool_list.hpp>
 
 #include <optional>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>

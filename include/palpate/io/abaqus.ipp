@@ -1,10 +1,9 @@
-// Definitions of abaqus.hpp.
+// Definitions of read_mesh.hpp: reads Abaqus and CalculiX files.
 #pragma once
 
-#include <palpate/io/abaqus.hpp>
 #include <palpate/io/detail/abaqus_groups.hpp>
 #include <palpate/io/detail/abaqus_lines.hpp>
-#include <palpate/io/detail/abaqus_types.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 #include <array>
 #include <utility>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/io/detail/cell_shape.hpp>
-#include <palpate/io/detail/text_reader.hpp>
+#include <palpate/io/detail/message.hpp>
 
 #include <limits>
 #include <vector>

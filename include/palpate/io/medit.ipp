@@ -1,11 +1,11 @@
-// Definitions of medit.hpp.
+// Definitions of read_mesh.hpp: reads Medit files.
 #pragma once
 
+#include <palpate/io/detail/id_table.hpp>
 #include <palpate/io/detail/medit_source.hpp>
 #include <palpate/io/detail/node_order.hpp>
-#include <palpate/io/detail/sorting.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
-#include <palpate/io/medit.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::medit {
 

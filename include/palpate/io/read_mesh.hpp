@@ -1,17 +1,111 @@
-// Reads a mesh from a file of any known format.
+// Reads a mesh from a file of any known format: the reader of every format, and read_mesh, which detects the format.
 #pragma once
 
-#include <palpate/io/abaqus.hpp>
 #include <palpate/io/decimal.hpp>
-#include <palpate/io/detail/gmsh_file.hpp>
-#include <palpate/io/detail/mesh_builder.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/medit.hpp>
-#include <palpate/io/tetgen.hpp>
-#include <palpate/io/veg.hpp>
-#include <palpate/io/vtk_legacy.hpp>
+#include <palpate/io/file_mesh.hpp>
+#include <palpate/mesh/mesh_ref.hpp>
+
+#include <functional>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
+
+namespace gmsh {
+
+/// Reads a whole Gmsh file. The regions are the physical volumes; with `labels` "elementary" the elementary tags
+/// replace all physical tags and names. Files in which no solid has a physical tag, but several elementary ones, get a
+/// note. Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported, each with file and line (in
+/// binary data: byte). Linear in the size of the text, O(n log n) if node ids are not 1 ... n; counts are compared with
+/// the size of the text before anything is allocated.
+FileMesh parse(std::string_view text, const std::string& name, std::string_view labels = {});
+
+}  // namespace gmsh
+
+namespace tetgen {
+
+/// The texts of the files of one mesh; `name` is their common name without extensions.
+struct Texts {
+  std::string name;
+  std::string_view node, ele, face;  ///< face may be empty
+};
+
+/// Reads the files x.node with x.ele and, if it exists, x.face. Ids count from 0 or 1, depending on the first node.
+/// Tags are boundary markers and region attributes: groups "point 1", "surface 7", "volume 3". Errors: bad_file,
+/// index_out_of_range, count_too_large, non_finite, unsupported, with file and line. Linear in the size of the texts.
+FileMesh parse(const Texts& texts);
+
+/// Reads the files of the mesh to which x.node, x.ele or x.face belongs.
+FileMesh read(const std::string& path);
+
+}  // namespace tetgen
+
+namespace medit {
+
+/// Reads a whole Medit file (*.mesh and *.meshb), as mmg, CGAL, TetGen, FreeFEM, Gmsh and fTetWild write them: text, or
+/// binary of either byte order, versions 1 to 4. References of vertices, edges, faces and solids other than 0 are tags:
+/// groups "point 4", "curve 3", "surface 2" and regions "volume 1". Sections may have any order, those of cells may be
+/// repeated; those without cells are skipped. Second-order nodes must be in the order of VTK. A text without End gets a
+/// note.
+///
+/// Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported (two dimensions, other orders of
+/// nodes), with file and line, in binary files with the byte. Linear in the size of the text; counts are compared with
+/// it before anything is allocated.
+FileMesh parse(std::string_view text, const std::string& name);
+
+}  // namespace medit
+
+namespace vtk {
+
+/// Reads a whole legacy VTK file (*.vtk): an unstructured grid of version 1 to 5.1, ASCII or binary. The region numbers
+/// are the cell array `labels`, if it is not empty, else the first of those that other programs write
+/// (detail/vtk_attributes.hpp); real numbers must be whole. Cells with a number other than 0 are in the groups "volume
+/// 3", "surface 2" and so on. Without region numbers, arrays that look like labels are noted. Errors: bad_file,
+/// index_out_of_range, count_too_large, non_finite, unsupported, with file and line (in binary data: byte). Linear in
+/// the size of the text.
+FileMesh parse(std::string_view text, const std::string& name, std::string_view labels = {});
+
+}  // namespace vtk
+
+namespace veg {
+
+/// Returns the text of an included file; throws SetupError if it cannot be read.
+using Include = std::function<std::string(const std::string& name)>;
+
+/// Reads a VegaFEM file (*.veg); `include` provides the files it includes. Every set is a group with its elements; the
+/// set of every *REGION is a region; elements without a region form the region "body". Errors: bad_file,
+/// index_out_of_range, non_finite, unsupported, with file and line. Linear in the size of the texts, apart from the
+/// number of regions.
+FileMesh parse(std::string_view text, const std::string& name, Include include);
+
+/// Reads a file and those it includes, which must be in its folder.
+FileMesh read(const std::string& path);
+
+}  // namespace veg
+
+namespace abaqus {
+
+/// Reads a whole file of Abaqus or CalculiX (*.inp): *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *SOLID SECTION, and one
+/// *PART with one *INSTANCE, which may be translated; other keywords are skipped. Every set and surface is a group,
+/// except those that are marked INTERNAL. The set of every *SOLID SECTION is a region; without sections the ELSET of
+/// every *ELEMENT. If the part and the assembly have a set of one name, that of the part is called "part.name".
+/// Springs, masses and connectors are skipped.
+///
+/// Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported (other element types, *INCLUDE,
+/// keywords that generate nodes, several instances), with file and line. O(n log n) in the size of the text.
+FileMesh parse(std::string_view text, const std::string& name);
+
+}  // namespace abaqus
+
+/// The mesh of a parsed file with elements of that layout, for which solid_shape must be valid; `numbering`, if given,
+/// receives the ids of the file.
+PlainMesh build_plain_mesh(FileMesh file, const ElementLayout& element, double scale, MeshNumbering* numbering);
+
+/// The same as a mesh of E.
+template <Element E>
+Mesh<E> build_mesh(FileMesh file, double scale, MeshNumbering* numbering) {
+  static_assert(facts(solid_shape<E>()).nodes == E::nodes);
+  return to_mesh<E>(build_plain_mesh(std::move(file), element_layout<E>, scale, numbering));
+}
 
 /// Options of the mesh readers.
 struct ReadOptions {
@@ -73,5 +167,12 @@ Mesh<E> read_mesh(const std::string& path, double scale, MeshNumbering* numberin
 }}}  // namespace palpate::PALPATE_ABI::io
 
 #if PALPATE_HEADER_ONLY
+#include <palpate/io/abaqus.ipp>
+#include <palpate/io/detail/gmsh_file.ipp>
+#include <palpate/io/detail/mesh_builder.ipp>
+#include <palpate/io/medit.ipp>
 #include <palpate/io/read_mesh.ipp>
+#include <palpate/io/tetgen.ipp>
+#include <palpate/io/veg.ipp>
+#include <palpate/io/vtk_legacy.ipp>
 #endif

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/io/detail/labels.hpp>
+#include <palpate/io/detail/medit_source.hpp>
 #include <palpate/io/detail/vtk_numbers.hpp>
 #include <palpate/io/file.hpp>
 #include <palpate/io/read_mesh.hpp>

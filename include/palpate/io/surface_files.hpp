@@ -1,8 +1,15 @@
 // Writes the surface of a mesh as OBJ or STL.
 #pragma once
 
+#include <palpate/io/decimal.hpp>
+#include <palpate/io/detail/message.hpp>
+#include <palpate/io/file.hpp>
 #include <palpate/mesh/detail/element_layout.hpp>
 #include <palpate/mesh/surface.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
@@ -14,7 +21,10 @@ struct TriangleSurface {
 };
 
 /// Refuses a displacement of `size` numbers that is neither empty nor has 3 numbers for each of `nodes` nodes.
-void check_displacement(Index size, Index nodes);
+inline void check_displacement(Index size, Index nodes) {
+  if (size != 0 && size != 3 * nodes)
+    refuse(SetupErrorKind::bad_argument, {"a displacement of ", size, " numbers for ", nodes, " nodes"});
+}
 
 /// Adds the triangles of a face to the end of `triangles`: `face` lists its nodes.
 void add_triangles(const FaceLayout& layout, const NodeId* face, std::vector<std::array<NodeId, 3>>& triangles);
@@ -62,8 +72,66 @@ void write_stl(const std::string& path, const Mesh<E>& mesh, const VectorX& disp
   write_stl(path, triangle_surface<E>(mesh, displacement));
 }
 
-}}}  // namespace palpate::PALPATE_ABI::io
+inline void add_triangles(const FaceLayout& layout, const NodeId* face, std::vector<std::array<NodeId, 3>>& triangles) {
+  for (int t = 0; t < layout.triangle_count; ++t) {
+    const std::array<int, 3>& local = layout.triangles[t];
+    triangles.push_back({face[local[0]], face[local[1]], face[local[2]]});
+  }
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/io/surface_files.ipp>
-#endif
+inline std::vector<NodeId> compress_nodes(std::vector<std::array<NodeId, 3>>& triangles) {
+  std::vector<NodeId> nodes;
+  nodes.reserve(3 * triangles.size());
+  for (const auto& t : triangles) nodes.insert(nodes.end(), t.begin(), t.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (auto& t : triangles)
+    for (NodeId& i : t) i = static_cast<NodeId>(std::lower_bound(nodes.begin(), nodes.end(), i) - nodes.begin());
+  return nodes;
+}
+
+inline void write_obj(const std::string& path, const TriangleSurface& surface) {
+  std::string text;
+  for (const Vector3& p : surface.positions) {
+    const double* x = p.data();
+    append(text, {"v ", to_decimal(x[0]), " ", to_decimal(x[1]), " ", to_decimal(x[2]), "\n"});
+  }
+  for (const auto& t : surface.triangles) append(text, {"f ", t[0] + 1, " ", t[1] + 1, " ", t[2] + 1, "\n"});
+  write_file(path, {text});
+}
+
+namespace detail {
+
+/// Adds the lowest `bytes` bytes of a number, the lowest first.
+inline void put_bytes(std::string& text, std::uint32_t bits, int bytes) {
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>((bits >> (8 * i)) & 0xffU);
+}
+
+inline void put_point(std::string& text, const double* x) {
+  for (int c = 0; c < 3; ++c) put_bytes(text, std::bit_cast<std::uint32_t>(static_cast<float>(x[c])), 4);
+}
+
+/// The unit normal of a triangle, zero when it has no area.
+inline std::array<double, 3> unit_normal(const double* a, const double* b, const double* c) {
+  const double u[] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (double& x : n) x = length > 0.0 ? x / length : 0.0;
+  return n;
+}
+
+}  // namespace detail
+
+inline void write_stl(const std::string& path, const TriangleSurface& surface) {
+  std::string text(80, '\0');  // a header that must not begin with "solid"
+  detail::put_bytes(text, static_cast<std::uint32_t>(surface.triangles.size()), 4);
+  for (const auto& t : surface.triangles) {
+    const auto corner = [&](std::size_t a) { return surface.positions[static_cast<std::size_t>(t[a])].data(); };
+    detail::put_point(text, detail::unit_normal(corner(0), corner(1), corner(2)).data());
+    for (std::size_t a = 0; a < 3; ++a) detail::put_point(text, corner(a));
+    detail::put_bytes(text, 0, 2);
+  }
+  write_file(path, {text});
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io

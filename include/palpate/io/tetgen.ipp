@@ -1,10 +1,10 @@
-// Definitions of tetgen.hpp.
+// Definitions of read_mesh.hpp: reads the files of TetGen.
 #pragma once
 
 #include <palpate/io/detail/numbered_rows.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/tetgen.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
-// Definitions of veg.hpp.
+// Definitions of read_mesh.hpp: reads VegaFEM files.
 #pragma once
 
 #include <palpate/io/detail/numbered_rows.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
 #include <palpate/io/detail/veg_lines.hpp>
 #include <palpate/io/file.hpp>
-#include <palpate/io/veg.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::veg {
 

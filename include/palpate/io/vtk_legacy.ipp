@@ -1,9 +1,9 @@
-// Definitions of vtk_legacy.hpp.
+// Definitions of read_mesh.hpp: reads legacy VTK files.
 #pragma once
 
 #include <palpate/io/detail/vtk_attributes.hpp>
 #include <palpate/io/detail/vtk_cells.hpp>
-#include <palpate/io/vtk_legacy.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
 

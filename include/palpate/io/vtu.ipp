@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/io/detail/message.hpp>
-#include <palpate/io/detail/vtk_types.hpp>
+#include <palpate/io/detail/vtk_cells.hpp>
 #include <palpate/io/file.hpp>
 #include <palpate/io/vtu.hpp>
 

@@ -1,7 +1,7 @@
 // Conjugate gradients for a time step: a bounded number of iterations and an estimate of the remaining error.
 #pragma once
 
-#include <palpate/linear/detail/operator_view.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <cmath>

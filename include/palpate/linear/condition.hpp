@@ -1,7 +1,7 @@
 // Accuracy of a solver: condition estimate and probe solve.
 #pragma once
 
-#include <palpate/linear/detail/operator_view.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

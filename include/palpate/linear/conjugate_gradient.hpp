@@ -1,8 +1,15 @@
-// Iterative solver for symmetric positive definite operators.
+// Iterative solver for symmetric positive definite operators, and for a stored dense matrix.
 #pragma once
 
+#include <palpate/core/detail/binary_io.hpp>
 #include <palpate/linear/detail/any_solver.hpp>
-#include <palpate/linear/detail/operator_view.hpp>
+#include <palpate/linear/detail/dense_kernels.hpp>
+#include <palpate/linear/detail/vector_kernels.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -69,8 +76,134 @@ class IterativeSolver {
   ConjugateGradientSolver solver_;
 };
 
-}}  // namespace palpate
+static_assert(LinearSolver<IterativeSolver>);
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/linear/conjugate_gradient.ipp>
-#endif
+inline ConjugateGradientSolver::ConjugateGradientSolver(Index size, ConjugateGradientParameters parameters)
+    : parameters_(parameters), r_(size), z_(size), p_(size), q_(size), best_(size) {
+  if (parameters_.maximum_iterations <= 0)
+    parameters_.maximum_iterations = static_cast<int>(std::clamp<Index>(40 * size, 100, 12'000));
+}
+
+inline SolveReport ConjugateGradientSolver::solve_into(const OperatorView& op, const VectorX& b, VectorX& x) noexcept {
+  SolveReport report{.converged = false};
+  detail::fill(x, 0.0);
+  r_ = b;
+  const Norms load = precondition_residual(op);
+  if (!(load.plain > 0.0) || !std::isfinite(load.plain)) {
+    report.converged = load.plain == 0.0;
+    return report;
+  }
+  best_ = x;
+  operator_norm_ = 0.0;
+  Norms reached = load;
+  bool going = true, at_floor = false;
+  while (going && !at_floor && !report.converged) {
+    going = iterate(op, load, reached, x, report.iterations);
+    op.apply(x, q_);
+    detail::subtract(b, q_, r_);
+    const Norms now = precondition_residual(op);
+    at_floor = !(now.preconditioned < 0.5 * reached.preconditioned);
+    if (!(now.preconditioned < reached.preconditioned)) break;
+    reached = now;
+    best_ = x;
+    report.converged = now.within(parameters_.tolerance, load);
+  }
+  x = best_;
+  report.relative_residual = reached.plain / load.plain;
+  constexpr double attainable = 1e-12;
+  const double scale = operator_norm_ * detail::norm(x) + load.plain;
+  report.converged =
+      report.converged || (going && reached.plain <= std::max(parameters_.tolerance, attainable) * scale);
+  return report;
+}
+
+inline ConjugateGradientSolver::Norms ConjugateGradientSolver::precondition_residual(const OperatorView& op) noexcept {
+  op.precondition(r_, z_);
+  return {detail::norm(r_), std::sqrt(detail::dot(r_, z_))};
+}
+
+inline bool ConjugateGradientSolver::iterate(const OperatorView& op, const Norms& load, const Norms& start, VectorX& x,
+                                             int& iterations) noexcept {
+  constexpr double most_per_round = 1e-8;
+  Norms now = start;
+  bool first = true;
+  p_ = z_;
+  while (!now.within(0.5 * parameters_.tolerance, load) && now.preconditioned > most_per_round * start.preconditioned) {
+    if (iterations == parameters_.maximum_iterations) return false;
+    op.apply(p_, q_);
+    const double curvature = detail::dot(p_, q_);
+    if (!(curvature > 0.0) || !std::isfinite(curvature)) return false;
+    if (first) {  // K p is rich in the stiffest motions
+      op.apply(q_, z_);
+      operator_norm_ = std::max(operator_norm_, detail::norm(z_) / detail::norm(q_));
+      first = false;
+    }
+    const double before = now.preconditioned * now.preconditioned;
+    detail::add_scaled(x, before / curvature, p_);
+    detail::add_scaled(r_, -before / curvature, q_);
+    now = precondition_residual(op);
+    if (!std::isfinite(now.preconditioned)) return false;
+    detail::scale_and_add(p_, now.preconditioned * now.preconditioned / before, z_);
+    ++iterations;
+  }
+  return true;
+}
+
+/// A dense SPD matrix, preconditioned by its diagonal. Satisfies SpdOperator. Copies share the matrix.
+class DenseOperator {
+ public:
+  DenseOperator() = default;
+  explicit DenseOperator(MatrixX matrix);
+  Index size() const noexcept { return inverse_diagonal_.size(); }
+  const MatrixX* matrix() const noexcept { return matrix_.get(); }
+  std::size_t bytes() const noexcept { return static_cast<std::size_t>(size() * size()) * sizeof(double); }
+  void apply(const VectorX& x, VectorX& y) const noexcept;
+  void precondition(const VectorX& x, VectorX& y) const noexcept;
+
+ private:
+  std::shared_ptr<const MatrixX> matrix_;
+  VectorX inverse_diagonal_;
+};
+
+/// Solver of the condensed system that keeps the matrix and neither factorises nor inverts it.
+class DenseConjugateGradient {
+ public:
+  DenseConjugateGradient() = default;
+  DenseConjugateGradient(MatrixX matrix, const SetupLimits&) : op_(std::move(matrix)), solver_(op_.size()) {}
+  void write(BinaryWriter& out) const;
+  /// Reads what `write` stored for a system of this size; valid only when the reader is good. Throws too_large.
+  static DenseConjugateGradient read(BinaryReader& in, Index size, const SetupLimits& limits);
+
+  Index size() const noexcept { return op_.size(); }
+  std::size_t bytes() const noexcept { return op_.bytes() + solver_.bytes(); }
+  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept { return solver_.solve_into(op_, b, x); }
+
+ private:
+  DenseOperator op_;
+  ConjugateGradientSolver solver_;
+};
+
+static_assert(LinearSolver<DenseConjugateGradient>);
+
+inline DenseOperator::DenseOperator(MatrixX matrix) : inverse_diagonal_(matrix.rows()) {
+  for (Index i = 0; i < matrix.rows(); ++i) inverse_diagonal_.data()[i] = 1.0 / matrix.data()[i * (matrix.rows() + 1)];
+  matrix_ = std::make_shared<const MatrixX>(std::move(matrix));
+}
+
+inline void DenseOperator::apply(const VectorX& x, VectorX& y) const noexcept {
+  detail::symmetric_product(*matrix_, x.data(), y.data());
+}
+
+inline void DenseOperator::precondition(const VectorX& x, VectorX& y) const noexcept {
+  for (Index i = 0; i < size(); ++i) y.data()[i] = inverse_diagonal_.data()[i] * x.data()[i];
+}
+
+inline void DenseConjugateGradient::write(BinaryWriter& out) const {
+  detail::write_dense(out, op_.matrix());
+}
+
+inline DenseConjugateGradient DenseConjugateGradient::read(BinaryReader& in, Index size, const SetupLimits& limits) {
+  return {detail::read_dense<double>(in, size, limits), limits};
+}
+
+}}  // namespace palpate

@@ -5,8 +5,8 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/detail/big_array.hpp>
-#include <palpate/linear/detail/front_substitution.hpp>
 #include <palpate/linear/detail/lower_panels.hpp>
+#include <palpate/linear/detail/one_front.hpp>
 #include <palpate/linear/detail/processor_kernels.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 

@@ -1,8 +1,8 @@
 // Definitions of dense_inverse.hpp.
 #pragma once
 
+#include <palpate/core/detail/binary_io.hpp>
 #include <palpate/linear/dense_inverse.hpp>
-#include <palpate/linear/detail/dense_io.hpp>
 #include <palpate/linear/detail/processor_kernels.hpp>
 #include <palpate/linear/detail/spd_inverse.hpp>
 

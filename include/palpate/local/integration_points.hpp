@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
-#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/strain_displacement.hpp>
 
@@ -14,7 +14,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A point of the element's rule. For elements with mean dilatation (element/mean_dilatation.hpp) also the mean over
+/// A point of the element's rule. For elements with mean dilatation (element/wrappers.hpp) also the mean over
 /// the element of the gradients, from which the change of volume is computed.
 template <Element E>
 struct IntegrationPoint : PointGeometry<E> {};

@@ -5,7 +5,7 @@
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/integration_points.hpp>
 #include <palpate/local/stiffness.hpp>
 

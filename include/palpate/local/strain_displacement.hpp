@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/detail/matrix_of_rows.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

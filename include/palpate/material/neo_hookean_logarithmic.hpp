@@ -7,9 +7,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/detail/deformation.hpp>
-#include <palpate/material/detail/invariants.hpp>
 #include <palpate/material/detail/material_range.hpp>
-#include <palpate/material/detail/small_strain.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/LU>

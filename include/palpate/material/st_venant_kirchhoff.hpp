@@ -7,7 +7,6 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/material/detail/deformation.hpp>
-#include <palpate/material/detail/small_strain.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <optional>

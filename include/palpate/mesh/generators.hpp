@@ -1,16 +1,18 @@
-// Boxes of tetrahedra and the two cubes of the thesis.
+// Boxes, spheres and cylinders of tetrahedra, and the two cubes of the thesis.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/mesh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/mesh/detail/boundary_groups.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -21,6 +23,26 @@ namespace palpate { inline namespace PALPATE_ABI {
 enum class BoxSplit { five_mirrored, six };
 
 namespace detail {
+
+/// Adds the group of all boundary faces that `choose` accepts, with their nodes. `choose` takes a face or a node; if it
+/// takes a node, a face is added if all its nodes are accepted.
+template <Element E, class Choose>
+void add_boundary_group(Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary, std::string_view name,
+                        Choose choose) {
+  const auto chosen = [&](const BoundaryFace& face) {
+    if constexpr (std::predicate<Choose&, NodeId>)
+      return std::ranges::all_of(face.nodes, choose);
+    else
+      return choose(face);
+  };
+  Group& group = mesh.groups.get_or_add(name, 2);
+  for (const BoundaryFace& face : boundary) {
+    if (!chosen(face)) continue;
+    group.faces.emplace_back(face.nodes.begin(), face.nodes.end());
+    group.nodes.insert(group.nodes.end(), face.nodes.begin(), face.nodes.end());
+  }
+  mesh.groups.tidy();
+}
 
 /// Appends a tetrahedron, with its last two nodes swapped if it would be inverted otherwise.
 void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c, NodeId d);
@@ -78,8 +100,20 @@ Mesh<Tet4> box_tet4(const Vector3& size, std::array<int, 3> cells, BoxSplit spli
 /// (2, 1, 1). Regions "cube_a", "cube_b".
 Mesh<Tet4> two_cubes();
 
+/// Sphere around the origin [m]: `refinement` = n layers between centre and surface, 20 n^3 elements, 10 n^2 + 2 nodes
+/// on the surface, the others inside (n = 1: the centre). Least quality above 0.6 for any n. Group "surface" contains
+/// all boundary nodes and outward faces. Refuses sizes that are not positive as bad_argument, n > 400 as
+/// count_too_large.
+Mesh<Tet4> sphere_tet4(double radius, int refinement);
+
+/// Cylinder around the z axis from z = 0 to `height` [m]: `n` rings between axis and side, with a number of layers that
+/// makes the elements about as high as wide; 18 n^2 elements per layer. Groups "bottom", "top" and "side" contain nodes
+/// and outward faces. Refuses sizes that are not positive as bad_argument, more than 10^8 elements as count_too_large.
+Mesh<Tet4> cylinder_tet4(double radius, double height, int n);
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/mesh/generators.ipp>
+#include <palpate/mesh/generators_round.ipp>
 #endif

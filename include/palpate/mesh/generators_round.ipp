@@ -1,12 +1,10 @@
-// Definitions of generators_round.hpp.
+// Definitions of the spheres and cylinders of generators.hpp.
 #pragma once
 
-#include <palpate/mesh/generators_round.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/detail/boundary_groups.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/mesh/groups.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/surface.hpp>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/groups.hpp>
+#include <palpate/mesh/mesh.hpp>
 
 #include <algorithm>
 #include <span>

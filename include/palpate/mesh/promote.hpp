@@ -47,7 +47,11 @@ class EdgeMiddles {
   const std::vector<Edge>& edges() const noexcept { return edges_; }
 
   /// The node in the middle of two nodes, if these are an edge.
-  std::optional<NodeId> find(NodeId a, NodeId b) const;
+  std::optional<NodeId> find(NodeId a, NodeId b) const {
+    const auto it = std::ranges::lower_bound(edges_, Edge(std::minmax({a, b})));
+    if (it == edges_.end() || *it != Edge(std::minmax({a, b}))) return std::nullopt;
+    return first_ + static_cast<NodeId>(it - edges_.begin());
+  }
 
  private:
   NodeId first_ = 0;
@@ -55,7 +59,16 @@ class EdgeMiddles {
 };
 
 /// Adds to a face the middles of its edges, which run from corner to corner.
-void promote_face(std::vector<NodeId>& face, const EdgeMiddles& middles, const std::string& group);
+inline void promote_face(std::vector<NodeId>& face, const EdgeMiddles& middles, const std::string& group) {
+  const std::size_t corners = face.size();
+  for (std::size_t i = 0; i < corners; ++i) {
+    const auto middle = middles.find(face[i], face[(i + 1) % corners]);
+    if (!middle)
+      raise(SetupErrorKind::unsupported, "group '" + group + "' has a face that is not a face of an element",
+            "Remove it before promotion");
+    face.push_back(*middle);
+  }
+}
 
 template <QuadraticElement E>
 void promote_group(Group& group, const Mesh<E>& mesh, const EdgeMiddles& middles) {
@@ -113,7 +126,3 @@ Mesh<To> promote(const Mesh<typename To::Linear>& linear) {
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/mesh/promote.ipp>
-#endif

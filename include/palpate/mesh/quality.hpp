@@ -30,7 +30,22 @@ inline constexpr bool constant_jacobian = E::order == 1 && E::faces.size() == 4;
 
 /// Updates the least relative volume and quality with the Jacobian J of a sample point, for an element scaled to a
 /// longest edge of one. The ideal element is the regular tetrahedron if `tetrahedron` is true, else the cube.
-void sample_shape(const Matrix3& J, double reference_volume, bool tetrahedron, ElementShape& shape) noexcept;
+inline void sample_shape(const Matrix3& J, double reference_volume, bool tetrahedron, ElementShape& shape) noexcept {
+  shape.relative_volume = std::min(shape.relative_volume, determinant(J) * reference_volume);
+  // A = J times the inverse Jacobian of the ideal element.
+  const double a = 1.0 / std::sqrt(3.0), b = 1.0 / std::sqrt(6.0), c = std::sqrt(1.5);
+  Matrix3 A = J;
+  double stretch = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (tetrahedron) {
+      A(i, 1) = 2.0 * a * J(i, 1) - a * J(i, 0);
+      A(i, 2) = c * J(i, 2) - b * (J(i, 0) + J(i, 1));
+    }
+    stretch += A(i, 0) * A(i, 0) + A(i, 1) * A(i, 1) + A(i, 2) * A(i, 2);
+  }
+  const double ratio = stretch > 0.0 ? 3.0 * std::pow(std::max(determinant(A), 0.0), 2.0 / 3.0) / stretch : 0.0;
+  shape.quality = std::min(shape.quality, ratio);
+}
 
 /// Squared distance between nodes a and b.
 template <Element E>
@@ -127,7 +142,3 @@ ElementShape shape_of_element(const double* positions, const NodeId* nodes) noex
 }  // namespace detail
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/mesh/quality.ipp>
-#endif

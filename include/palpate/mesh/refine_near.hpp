@@ -1,4 +1,4 @@
-// Local refinement of tetrahedra towards a wanted edge length.
+// Local refinement of tetrahedra towards a wanted edge length: near points, parts of the mesh, or what a scene touches.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -7,6 +7,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/refine_target.hpp>
+#include <palpate/mesh/scene.hpp>
 
 #include <concepts>
 #include <functional>
@@ -101,6 +102,22 @@ requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>& mesh, const
                                                       RefineNearReport* report = nullptr) {
   return refine_near(mesh, std::vector<RefineTarget>{}, {}, options, report);
 }
+
+/// Whether a scene selects anything by a list of nodes. Refinement adds nodes to groups, not to lists.
+bool lists_nodes(const Scene& scene);
+
+/// Replaces the listed nodes of a scene by new groups of the mesh, "listed nodes 1" and so on, and returns that scene.
+/// They contain the boundary faces all of whose nodes are listed, and with a node inside the body the elements, too:
+/// `refine_near` and `promote` add the new nodes on these. Throws index_out_of_range for a node that the mesh does not
+/// have.
+Scene name_listed_nodes(Mesh<Tet4>& mesh, const Scene& scene);
+
+/// The mesh with edges of at most `edge` [m] on the touchable part of a scene, longer ones with the distance. Of a set
+/// of points (mesh/where.hpp) the part is where the surface is inside it, whatever nodes are there. Throws unsupported
+/// for a scene that lists nodes: use `name_listed_nodes` first; bad_argument for a scene that is not touched; the
+/// errors of `refine_near`.
+Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, double edge,
+                               const RefineNearOptions& options = {}, RefineNearReport* report = nullptr);
 
 }}  // namespace palpate
 

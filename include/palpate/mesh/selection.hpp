@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/mesh/groups.hpp>
+#include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>

@@ -1,7 +1,6 @@
 // HapticFEModel: tissue composed of element, material and solver.
 #pragma once
 
-#include <palpate/assembly/detail/region_materials.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>

@@ -4,10 +4,9 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/matrix_free.hpp>
-#include <palpate/model/detail/admit_body.hpp>
+#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
-#include <palpate/model/static/detail/make_stiffness.hpp>
 #include <palpate/model/static/detail/solver_recipe.hpp>
 
 #include <memory>

@@ -4,13 +4,11 @@
 #include <palpate/model/policies.hpp>
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
-#include <palpate/condensation/condensed_system.hpp>
 #include <palpate/condensation/detail/schur.hpp>
-#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/core/detail/binary_io.hpp>
 #include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
-#include <palpate/linear/dense_conjugate_gradient.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 

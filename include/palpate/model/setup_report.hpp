@@ -3,7 +3,6 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/accuracy_report.hpp>
 #include <palpate/model/cache/cache_report.hpp>
 
 #include <iosfwd>
@@ -31,6 +30,21 @@ enum class SetupFlag : std::uint32_t {
   accuracy_not_reached = 1u << 11,  ///< the force error is above the wanted one, or not known: see AccuracyReport
   file_notes = 1u << 12,            ///< the mesh file has data that its reader did not use: see Mesh::notes
   fixed_contact = 1u << 13,         ///< all nodes that can be touched are fixed: tools meet a rigid surface
+};
+
+/// Error of the contact force because of the mesh, for the sphere that touches according to the scene (TouchOptions).
+/// Errors are relative to the force on a fine mesh; positive: the force is too large.
+struct AccuracyReport {
+  double radius = 0.0;   ///< of the sphere [m]
+  int places = 0;        ///< where it was measured; 0: not measured, for the reason in `remark`
+  int pinched = 0;       ///< of these, where a second sphere pressed the opposite side, too (TouchOptions::pinched)
+  double typical = 0.0;  ///< root mean square of the errors at a depth of an eighth of the radius: that of single
+                         ///< spheres or that of pinches, whichever is larger
+  double largest = 0.0;  ///< the largest of all these errors, with its sign
+  double facet = 0.0;    ///< mean length of the facets at the places [m]
+  Index nodes = 0;       ///< of the fine mesh
+  double wanted = 0.0;   ///< ForceErrorOptions::wanted
+  std::string remark;
 };
 
 /// Sizes, memory [bytes], times [s] and findings of a set-up.

@@ -1,4 +1,5 @@
-// Gauss-Legendre rules with 1 to 5 points on [-1, 1] (thesis 3.5 and appendix B, in full double precision).
+// Gauss-Legendre rules with 1 to 5 points on [-1, 1] (thesis 3.5 and appendix B, in full double precision), and their
+// tensor products on the square [-1, 1]^2 and the cube [-1, 1]^3.
 #pragma once
 
 #include <palpate/concepts/quadrature.hpp>
@@ -51,5 +52,33 @@ struct GaussLegendre<5> {
                                                              {{0.53846931010568309104}, 0.47862867049936646804},
                                                              {{0.90617984593866399280}, 0.23692688505618908751}}};
 };
+
+/// N points per axis, the first coordinate running fastest; exact to degree 2 N - 1 in every coordinate.
+template <int N, int Dimension>
+struct TensorRule {
+  static constexpr int dimension = Dimension, degree = 2 * N - 1;
+  static constexpr std::size_t count = Dimension == 2 ? N * N : N * N * N;
+  static constexpr std::array<QuadraturePoint<Dimension>, count> points = [] {
+    std::array<QuadraturePoint<Dimension>, count> all{};
+    for (std::size_t k = 0; k < count; ++k) {
+      all[k].weight = 1.0;
+      std::size_t rest = k;
+      for (double& xi : all[k].xi) {
+        const auto& on_line = GaussLegendre<N>::points[rest % N];
+        xi = on_line.xi[0];
+        all[k].weight *= on_line.weight;
+        rest /= N;
+      }
+    }
+    return all;
+  }();
+};
+
+/// Rule on the square with N x N points.
+template <int N>
+using QuadrilateralRule = TensorRule<N, 2>;
+/// Rule on the cube with N x N x N points.
+template <int N>
+using HexahedronRule = TensorRule<N, 3>;
 
 }}  // namespace palpate

@@ -1,10 +1,10 @@
-// The laws of concepts/assembler.hpp.
+// The laws of StiffnessOperator (concepts/linear_solver.hpp).
 #pragma once
 
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/concepts/assembler.hpp>
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/linear_solver.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>

@@ -1,7 +1,6 @@
-// The laws of concepts/condensation.hpp.
+// The laws of StaticSystem (concepts/linear_solver.hpp).
 #pragma once
 
-#include <palpate/concepts/condensation.hpp>
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>

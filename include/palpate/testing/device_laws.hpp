@@ -1,4 +1,4 @@
-// The laws of concepts/haptic_device.hpp.
+// The laws of concepts/haptic_device.hpp, and forces for simulated devices and fakes.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -6,7 +6,7 @@
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/testing/open_gate.hpp>
+#include <palpate/haptic/force_gate.hpp>
 #include <palpate/testing/violation.hpp>
 
 #include <algorithm>
@@ -16,6 +16,23 @@
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
+
+/// A gate that passes every finite force up to 1e9 N and torque up to 1e9 N m unchanged, after a first tick of zero.
+/// Never use it with a device that a person holds.
+inline ForceGate open_gate() {
+  ForceLimits limits;
+  limits.peak_force = limits.peak_torque = limits.slew_rate = limits.stale_after = 1e9;
+  limits.ramp_time = 1e-9;
+  limits.period = limits.fade_time = 1.0;
+  return ForceGate(limits);
+}
+
+/// A force [N] and a torque [N m] that have passed an open gate.
+inline GatedForce gated(const Vector3& force, const Vector3& torque = Vector3(0.0, 0.0, 0.0)) {
+  ForceGate gate = open_gate();
+  gate.apply(force, torque, 0.0, 0.0, true, false);
+  return gate.apply(force, torque, 1.0, 1.0, true, false);
+}
 
 /// Access to the internals of a device for the tests. `rendered` returns the force that its motors receive [N]; an
 /// adapter of an SDK queries the SDK, or a fake of it. `break_reads(device, true)` makes reads invalid, `false`

@@ -37,14 +37,21 @@ Tensor3<double> random_deformation(const M& material, Random& random, double siz
 
 namespace detail {
 
-double norm(const Tensor3<double>& t);
+inline double norm(const Tensor3<double>& t) {
+  return std::sqrt(contract(t, t));
+}
+
 /// f'(0) by the fourth-order central difference with points -2h, -h, h, 2h.
 template <class F>
 auto derivative(F f) {
   constexpr double h = 1e-3;
   return (1.0 / (12.0 * h)) * (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h)));
 }
-Tensor3<double> stepped(Tensor3<double> f, int entry, double by);
+inline Tensor3<double> stepped(Tensor3<double> f, int entry, double by) {
+  f.e[entry] += by;
+  return f;
+}
+
 /// Converts a deformation of numbers or lanes to doubles.
 template <class S>
 Tensor3<double> lane(const Tensor3<S>& t, int i) {
@@ -56,7 +63,9 @@ Tensor3<double> lane(const Tensor3<S>& t, int i) {
       d.e[k] = static_cast<double>(t.e[k][i]);
   return d;
 }
-std::string name_of(int k);
+inline std::string name_of(int k) {
+  return "deformation " + std::to_string(k);
+}
 
 }  // namespace detail
 
@@ -254,7 +263,3 @@ Violations hyperelastic_material_laws(const M& material, HyperelasticClaims clai
 }
 
 }}}  // namespace palpate::testing
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/hyperelastic_laws.ipp>
-#endif

@@ -1,4 +1,4 @@
-// The laws of concepts/linear_solver.hpp.
+// The laws of LinearSolver (concepts/linear_solver.hpp).
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/concepts/servo.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/device/simulated_device.hpp>
 #include <palpate/haptic/energy_tank.hpp>
-#include <palpate/testing/open_gate.hpp>
+#include <palpate/testing/device_laws.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -24,27 +24,6 @@ struct Violation {
 /// All violated laws of one subject; empty if all laws are satisfied.
 using Violations = std::vector<Violation>;
 
-/// Reports unless value <= bound. NaN is a violation.
-void expect_at_most(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
-
-/// Reports unless value >= bound. NaN is a violation.
-void expect_at_least(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
-
-/// Reports unless value > bound. NaN is a violation.
-void expect_above(Violations& v, std::string_view law, double value, double bound, std::string detail = {});
-
-/// Reports unless the condition is true.
-void expect_true(Violations& v, std::string_view law, bool holds, std::string detail = {});
-
-/// Adds the violations of a part; `part` is prepended to their details.
-void append(Violations& all, Violations more, const std::string& part = {});
-
-/// True if the law with that name is violated.
-bool violates(const Violations& violations, std::string_view law);
-
-/// One line per violation; empty if there are none.
-std::string describe(const Violations& violations);
-
 /// Checks many values against one upper bound, and reports the worst of them and how many exceeded it.
 class Worst {
  public:
@@ -60,7 +39,11 @@ class Worst {
     value_ = value;
     detail_ = detail();
   }
-  void report(Violations& violations) const;
+  void report(Violations& violations) const {
+    if (count_ == 0) return;
+    const std::string others = count_ == 1 ? std::string() : ", " + std::to_string(count_) + " in all";
+    violations.push_back({law_, detail_ + others, value_, bound_});
+  }
 
  private:
   std::string law_, detail_;
@@ -68,8 +51,50 @@ class Worst {
   std::int64_t count_ = 0;
 };
 
-}}}  // namespace palpate::testing
+/// Reports unless value <= bound. NaN is a violation.
+inline void expect_at_most(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
+  if (!(value <= bound)) v.push_back({std::string(law), std::move(detail), value, bound});
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/testing/violation.ipp>
-#endif
+/// Reports unless value >= bound. NaN is a violation.
+inline void expect_at_least(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
+  if (!(value >= bound)) v.push_back({std::string(law), std::move(detail), value, bound});
+}
+
+/// Reports unless value > bound. NaN is a violation.
+inline void expect_above(Violations& v, std::string_view law, double value, double bound, std::string detail = {}) {
+  if (!(value > bound)) v.push_back({std::string(law), std::move(detail), value, bound});
+}
+
+/// Reports unless the condition is true.
+inline void expect_true(Violations& v, std::string_view law, bool holds, std::string detail = {}) {
+  if (!holds) v.push_back({std::string(law), std::move(detail), 0.0, 1.0});
+}
+
+/// Adds the violations of a part; `part` is prepended to their details.
+inline void append(Violations& all, Violations more, const std::string& part = {}) {
+  for (Violation& v : more) {
+    if (!part.empty()) v.detail = v.detail.empty() ? part : part + ": " + v.detail;
+    all.push_back(std::move(v));
+  }
+}
+
+/// True if the law with that name is violated.
+inline bool violates(const Violations& violations, std::string_view law) {
+  for (const Violation& v : violations)
+    if (v.law == law) return true;
+  return false;
+}
+
+/// One line per violation; empty if there are none.
+inline std::string describe(const Violations& violations) {
+  std::string text;
+  for (const Violation& v : violations) {
+    text += v.law;
+    if (!v.detail.empty()) text += " (" + v.detail + ")";
+    text += ": " + number(v.value) + ", bound " + number(v.bound) + '\n';
+  }
+  return text;
+}
+
+}}}  // namespace palpate::testing

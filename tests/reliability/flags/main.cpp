@@ -2,7 +2,7 @@
 // Returns 1 when one differs by more than rounding, or when the gate outputs a force that it must not.
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>

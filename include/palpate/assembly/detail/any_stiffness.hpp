@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/concepts/assembler.hpp>
+#include <palpate/concepts/linear_solver.hpp>
 
 #include <memory>
 #include <utility>

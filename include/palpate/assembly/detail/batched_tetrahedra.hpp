@@ -1,7 +1,6 @@
 // Internal force of tetrahedra at any strain, several elements simultaneously; used for explicit integration.
 #pragma once
 
-#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/tetrahedron_kernels.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
@@ -15,7 +14,7 @@
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/material/detail/small_strain.hpp>
+#include <palpate/material/detail/deformation.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/quality.hpp>
 

@@ -1,7 +1,6 @@
 // Matrix-free force and stiffness of linear tetrahedra in frames that rotate with the elements.
 #pragma once
 
-#include <palpate/assembly/detail/range_watch.hpp>
 #include <palpate/assembly/detail/tetrahedron_batches.hpp>
 #include <palpate/assembly/detail/volume_watch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
@@ -10,14 +9,13 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/lane_rows.hpp>
 #include <palpate/core/detail/lanes.hpp>
-#include <palpate/core/detail/tracked_rotation.hpp>
 #include <palpate/core/rotation.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/corotational.hpp>
-#include <palpate/material/detail/small_strain.hpp>
+#include <palpate/material/detail/deformation.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/Geometry>

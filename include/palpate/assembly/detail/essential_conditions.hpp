@@ -3,11 +3,14 @@
 
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/scene.hpp>
+#include <palpate/mesh/selection.hpp>
 #include <palpate/mesh/surface.hpp>
 
+#include <string>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -24,17 +27,52 @@ struct EssentialConditions {
   Index free_count() const noexcept { return static_cast<Index>(free_dofs.size()); }
 
   /// Copies the entries of the free dofs from a full vector. No allocation when `free_part` has its size.
-  void gather(const VectorX& full, VectorX& free_part) const noexcept;
+  void gather(const VectorX& full, VectorX& free_part) const noexcept {
+    for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
+  }
   /// Full vector with `free_part` on free dofs and `values` on prescribed dofs.
-  void place(const VectorX& free_part, const VectorX& values, VectorX& full) const noexcept;
+  void place(const VectorX& free_part, const VectorX& values, VectorX& full) const noexcept {
+    full = values;
+    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
+  }
   /// Full vector with `free_part` on free dofs and zeros on prescribed dofs.
-  void scatter(const VectorX& free_part, VectorX& full) const noexcept;
+  void scatter(const VectorX& free_part, VectorX& full) const noexcept {
+    full.setZero();
+    for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
+  }
 };
 
 /// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when
 /// one dof has two different values.
-EssentialConditions resolve_essential(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
-                                      const Scene& scene);
+inline EssentialConditions resolve_essential(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
+                                             const Scene& scene) {
+  EssentialConditions c;
+  c.constrained.assign(static_cast<std::size_t>(mesh.node_count), 0);
+  c.prescribed = VectorX::Zero(3 * mesh.node_count);
+  for (const auto& condition : scene.prescribed())
+    for (NodeId node : resolve_nodes(mesh, boundary, condition.where))
+      for (int i = 0; i < 3; ++i) {
+        const auto& value = condition.values[static_cast<std::size_t>(i)];
+        if (!value) continue;
+        auto& bits = c.constrained[static_cast<std::size_t>(node)];
+        const Index dof = 3 * Index{node} + i;
+        if ((bits & (1u << i)) != 0 && c.prescribed[dof] != *value)
+          raise_at(SetupIds::nodes, node, SetupErrorKind::conflicting_conditions,
+                   std::string("component ") + "xyz"[i] + " of a node is prescribed as " + number(c.prescribed[dof]) +
+                       " and as " + number(*value),
+                   "Prescribe one value per component");
+        bits = static_cast<std::uint8_t>(bits | (1u << i));
+        c.prescribed[dof] = *value;
+      }
+  c.free_index.assign(static_cast<std::size_t>(3 * mesh.node_count), -1);
+  for (Index dof = 0; dof < 3 * mesh.node_count; ++dof)
+    if ((c.constrained[static_cast<std::size_t>(dof / 3)] & (1u << (dof % 3))) == 0) {
+      c.free_index[static_cast<std::size_t>(dof)] = static_cast<Index>(c.free_dofs.size());
+      c.free_dofs.push_back(dof);
+    }
+  return c;
+}
+
 template <Element E>
 EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary,
                                       const Scene& scene) {
@@ -42,7 +80,3 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/essential_conditions.ipp>
-#endif

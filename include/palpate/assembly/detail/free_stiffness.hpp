@@ -6,14 +6,17 @@
 #include <palpate/assembly/detail/essential_conditions.hpp>
 #include <palpate/assembly/detail/incomplete_cholesky.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/small_matrix.hpp>
 #include <palpate/core/types.hpp>
 
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -33,10 +36,17 @@ class FreeStiffness {
 
   Index size() const noexcept { return conditions_ != nullptr ? conditions_->free_count() : 0; }
   /// Of the preconditioner and the workspaces.
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return (inverse_blocks_ ? inverse_blocks_->size() * sizeof(Matrix3) : 0) + (factor_ ? factor_->bytes() : 0) +
+           static_cast<std::size_t>(in_.size() + out_.size()) * sizeof(double);
+  }
 
   /// y = K_ff x. No allocation.
-  void apply(const VectorX& x, VectorX& y) const noexcept;
+  void apply(const VectorX& x, VectorX& y) const noexcept {
+    conditions_->scatter(x, in_);
+    stiffness_->apply(in_, out_);
+    conditions_->gather(out_, y);
+  }
   /// y = P^-1 x. No allocation.
   void precondition(const VectorX& x, VectorX& y) const noexcept;
 
@@ -89,11 +99,44 @@ SparseMatrix free_matrix(const Matrix& k, const EssentialConditions& conditions)
   return lower;
 }
 
+inline FreeStiffness::FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions)
+    : stiffness_(stiffness), conditions_(&conditions), in_(stiffness.size()), out_(stiffness.size()) {
+  std::vector<Matrix3> blocks = stiffness.diagonal_blocks();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const unsigned fixed = conditions.constrained[i];
+    blocks[i] = inverse(detail::free_block(blocks[i].data(), fixed, fixed, true));
+  }
+  inverse_blocks_ = std::make_shared<const std::vector<Matrix3>>(std::move(blocks));
+}
+
+inline FreeStiffness::FreeStiffness(const BlockMatrix& stiffness, const EssentialConditions& conditions,
+                                    const SetupLimits& limits)
+    : stiffness_(stiffness),
+      conditions_(&conditions),
+      factor_(std::make_shared<const IncompleteCholesky>(stiffness, conditions, limits)),
+      in_(stiffness.size()),
+      out_(stiffness.size()) {}
+
+inline void FreeStiffness::precondition(const VectorX& x, VectorX& y) const noexcept {
+  conditions_->scatter(x, in_);
+  if (factor_)
+    factor_->solve_into(in_, out_);
+  else
+    for (std::size_t i = 0; i < inverse_blocks_->size(); ++i) {
+      const auto node = static_cast<Index>(i);
+      set_node_vector(out_, node, (*inverse_blocks_)[i] * node_vector(in_, node));
+    }
+  conditions_->gather(out_, y);
+}
+
 /// 1-norm of K_ff. O(entries).
-double free_norm(const BlockMatrix& k, const EssentialConditions& conditions);
+inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditions) {
+  VectorX sums = VectorX::Zero(conditions.free_count());
+  for_each_free_entry(k, conditions, [&](Index row, Index column, double value) {
+    sums[column] += std::abs(value);
+    if (row != column) sums[row] += std::abs(value);
+  });
+  return sums.size() > 0 ? sums.maxCoeff() : 0.0;
+}
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/free_stiffness.ipp>
-#endif

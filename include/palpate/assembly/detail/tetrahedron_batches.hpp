@@ -1,12 +1,13 @@
 // Memory layout of tetrahedra in batches of lanes, for a force that is computed every tick.
 #pragma once
 
-#include <palpate/assembly/detail/constant_geometry.hpp>
+#include <palpate/assembly/body.hpp>
 #include <palpate/assembly/detail/tetrahedron_batch.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/material.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/core/detail/lane_rows.hpp>
 #include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -35,8 +36,29 @@ namespace detail {
 
 /// Bisects along the longest side of the bounding box of the centres until a part has at most `most` elements. Cuts
 /// are at multiples of `group`.
-void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
-                     int region, std::vector<ElementBlock>& blocks);
+inline void bisect_elements(std::span<NodeId> elements, const std::vector<Vector3>& centre, Index most, Index group,
+                            int region, std::vector<ElementBlock>& blocks) {
+  const auto count = static_cast<Index>(elements.size());
+  if (count <= most) {
+    blocks.push_back({region, {elements.begin(), elements.end()}});
+    return;
+  }
+  Box box;
+  for (NodeId e : elements) box.include(centre[static_cast<std::size_t>(e)]);
+  const Vector3 size = box.size();
+  int axis = 0;
+  for (int c = 1; c < 3; ++c)
+    if (size[c] > size[axis]) axis = c;
+  const Index half = std::max(group, (count / 2 + group / 2) / group * group);
+  const auto before = [&](NodeId a, NodeId b) {
+    const double xa = centre[static_cast<std::size_t>(a)][axis], xb = centre[static_cast<std::size_t>(b)][axis];
+    return xa < xb || (xa == xb && a < b);
+  };
+  std::nth_element(elements.begin(), elements.begin() + half, elements.end(), before);
+  const auto middle = static_cast<std::size_t>(half);
+  bisect_elements(elements.subspan(0, middle), centre, most, group, region, blocks);
+  bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
+}
 
 }  // namespace detail
 
@@ -256,8 +278,8 @@ TetrahedronBatches<S, N> make_batches(const HyperelasticBody<E, M>& body, double
   return TetrahedronBatches<S, N>(body.rest.mesh);
 }
 
-}}  // namespace palpate
+namespace detail {
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/tetrahedron_batches.ipp>
-#endif
+}  // namespace detail
+
+}}  // namespace palpate

@@ -1,7 +1,6 @@
 // The kernels of batched tetrahedra, chosen for the processor at run time.
 #pragma once
 
-#include <palpate/assembly/detail/tetrahedron_kernel_types.hpp>
 #include <palpate/assembly/detail/tetrahedron_kernels_here.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/for_processor.hpp>

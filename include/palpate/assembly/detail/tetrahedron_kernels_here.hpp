@@ -1,13 +1,50 @@
-// The kernels of batched tetrahedra, compiled with the flags of the including source.
+// The kernels of batched tetrahedra, compiled with the flags of the including source, and their types.
 #pragma once
 
 #include <palpate/assembly/detail/tetrahedron_batch.hpp>
-#include <palpate/assembly/detail/tetrahedron_kernel_types.hpp>
+#include <palpate/core/config.hpp>
 #include <palpate/material/detail/neo_hookean_stress.hpp>
 
+#include <cstdint>
 #include <type_traits>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate {
+
+// The same types for all compiler flags, as in linear/detail/kernel_types.hpp.
+namespace any_flags {
+
+/// Lanes of a batch that the kernels compute: 64 bytes.
+template <class S>
+inline constexpr int tetrahedra_at_once = 64 / static_cast<int>(sizeof(S));
+
+/// The force of a block of tetrahedra. The layout of TetrahedronBatch does not depend on compiler flags.
+template <class S>
+struct TetrahedronJob {
+  const void* batches;  ///< TetrahedronBatch<S, tetrahedra_at_once<S>>
+  std::int64_t batch_count;
+  const std::int32_t* nodes;  ///< of every row
+  std::int64_t row_count;
+  const double* displacement;  ///< three numbers per node of the mesh
+  S* rows;                     ///< four numbers per row; the force is added
+  S lambda, mu;                ///< Lame's constants
+  S* volumes;                  ///< written: smallest, batch, upright, broken of VolumeLanes
+};
+
+/// Kernels compiled with the same flags.
+struct TetrahedronKernels {
+  void (*neo_hookean_double)(const TetrahedronJob<double>&) noexcept;
+  void (*neo_hookean_float)(const TetrahedronJob<float>&) noexcept;
+
+  void neo_hookean(const TetrahedronJob<double>& job) const noexcept { neo_hookean_double(job); }
+  void neo_hookean(const TetrahedronJob<float>& job) const noexcept { neo_hookean_float(job); }
+};
+
+// Defined in palpate::compiled, each in a source of its own (cmake/compiled.cmake).
+extern const TetrahedronKernels tetrahedra_avx2, tetrahedra_avx512;
+
+}  // namespace any_flags
+
+inline namespace PALPATE_ABI { namespace detail {
 
 static_assert(std::is_same_v<NodeId, std::int32_t>);
 
@@ -42,4 +79,5 @@ inline void add_neo_hookean_block(const any_flags::TetrahedronJob<S>& job) noexc
 inline constexpr any_flags::TetrahedronKernels tetrahedra_here{add_neo_hookean_block<double>,
                                                                add_neo_hookean_block<float>};
 
-}}}  // namespace palpate::detail
+}}
+}  // namespace palpate::detail

@@ -16,6 +16,8 @@
 #include <palpate/material/viscoelastic.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -61,7 +63,14 @@ std::vector<Matrix6> shares_of_elasticity(const ViscousBody<E>& body, double kep
 }
 
 /// All relaxation times, each once.
-std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region);
+inline std::vector<double> distinct_times(const std::vector<std::vector<PronyTerm>>& by_region) {
+  std::vector<double> times;
+  for (const auto& terms : by_region)
+    for (const PronyTerm& t : terms) times.push_back(t.relaxation_time);
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
 
 }  // namespace detail
 
@@ -143,8 +152,42 @@ class ViscousForces final : public ElasticForces {
   double dt_ = -1.0;
 };
 
-}}  // namespace palpate
+inline double ViscousForces::energy(const VectorX& u) const noexcept {
+  step_.apply(u, product_);
+  return u.dot(0.5 * product_ + past_);
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/assembly/detail/viscous_forces.ipp>
-#endif
+inline DeformationReport ViscousForces::force(const VectorX& u, VectorX& f) const noexcept {
+  step_.apply(u, f);
+  f += past_;
+  DeformationReport report;
+  report.smallest_volume_ratio = 1.0;
+  return report;
+}
+
+inline void ViscousForces::begin_step(double dt) noexcept {
+  if (dt != dt_) set_length(dt);
+  past_.setZero();
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    trial_ = decay_[i] * history_[i] - gain_[i] * last_;
+    fading_[i].apply(trial_, product_);
+    past_ += product_;
+  }
+}
+
+inline void ViscousForces::end_step(const VectorX& u) noexcept {
+  for (std::size_t i = 0; i < times_.size(); ++i) history_[i] = decay_[i] * history_[i] + gain_[i] * (u - last_);
+  last_ = u;
+}
+
+inline void ViscousForces::set_length(double dt) noexcept {
+  dt_ = dt;
+  step_.copy_values(slow_);
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    decay_[i] = std::exp(-dt / times_[i]);
+    gain_[i] = detail::mean_decay(dt / times_[i]);
+    step_.add(gain_[i], fading_[i]);
+  }
+}
+
+}}  // namespace palpate

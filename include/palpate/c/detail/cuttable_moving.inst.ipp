@@ -1,8 +1,8 @@
 // Compiled once: the composition at large strain that can be cut, for the C interface.
 #include <palpate/c/detail/moving_policies.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include <array>
 

@@ -1,6 +1,6 @@
 // Compiled once: linear compositions of MeanDilatation<Hex8> for the C interface.
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/mean_dilatation.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/c/detail/linear_policies.hpp>
 #include <palpate/model/shipped/shipped.hpp>
 

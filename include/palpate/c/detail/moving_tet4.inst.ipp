@@ -1,7 +1,7 @@
 // Compiled once: compositions of Smoothed<Tet4> at large strain, for the C interface.
 #include <palpate/c/detail/moving_policies.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 
 #include <array>
 

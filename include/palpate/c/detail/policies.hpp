@@ -1,9 +1,9 @@
 // The compositions of the C interface, by name.
 #pragma once
 
-#include <palpate/assembly/detail/region_materials.hpp>
 #include <palpate/c/detail/any_tissue.hpp>
 #include <palpate/c/detail/given_mesh.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/scene.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/c/detail/handles.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include <array>

@@ -1,5 +1,5 @@
 // Compiled once: linear compositions of Smoothed<Tet4> for the C interface.
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/c/detail/linear_policies.hpp>
 #include <palpate/model/shipped/shipped.hpp>

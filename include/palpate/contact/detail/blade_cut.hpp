@@ -1,7 +1,7 @@
 // Cutting resistance of a blade.
 #pragma once
 
-#include <palpate/contact/blade_tool.hpp>
+#include <palpate/contact/tools.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 

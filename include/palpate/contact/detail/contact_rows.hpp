@@ -4,7 +4,6 @@
 #include <palpate/contact/coulomb_friction.hpp>
 #include <palpate/contact/detail/candidates.hpp>
 #include <palpate/contact/detail/complementarity.hpp>
-#include <palpate/contact/detail/point_compliance.hpp>
 #include <palpate/contact/detail/row_compliance.hpp>
 
 #include <algorithm>
@@ -183,6 +182,5 @@ class ContactRows {
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/contact_rows.ipp>
-#include <palpate/contact/detail/contact_rows_friction.ipp>
-#include <palpate/contact/detail/contact_rows_normals.ipp>
+#include <palpate/contact/detail/contact_rows_directions.ipp>
 #endif

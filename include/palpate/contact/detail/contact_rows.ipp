@@ -3,7 +3,7 @@
 
 #include <palpate/contact/detail/contact_kernels.hpp>
 #include <palpate/contact/detail/contact_rows.hpp>
-#include <palpate/contact/detail/contact_rows_friction.ipp>  // inline functions
+#include <palpate/contact/detail/contact_rows_directions.ipp>  // inline functions
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Displacement of the vertices of the contact surface under the forces of the tools.
 #pragma once
 
-#include <palpate/contact/detail/half_space_loads.hpp>
+#include <palpate/contact/detail/half_space.hpp>
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/contact/tissue_view.hpp>
 

@@ -3,10 +3,19 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/detail/content_hash.hpp>
+#include <palpate/core/platform.hpp>
 
+#include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -19,7 +28,9 @@ class AtomicFile {
   /// Opens the temporary file. On failure `stream()` is null and `error()` gives the reason. Files of this name pattern
   /// that a killed process left behind are removed if they are older than an hour.
   explicit AtomicFile(std::string path);
-  ~AtomicFile();
+  ~AtomicFile() {
+    if (open_) discard();
+  }
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
@@ -47,8 +58,68 @@ class AtomicFile {
   bool open_ = false;  // there is a temporary file
 };
 
-}}  // namespace palpate
+inline AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  remove_leftovers();
+  for (int attempt = 0; attempt < 16 && !file_; ++attempt) {
+    temporary_ = path_ + suffix + unique_digits();
+    errno = 0;
+    file_.reset(platform::create_new_file(temporary_));
+    const int code = errno;
+    if (!file_) error_ = detail::system_message(code);
+    if (code != EEXIST) break;
+  }
+  open_ = file_ != nullptr;
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/core/detail/atomic_file.ipp>
-#endif
+inline bool AtomicFile::commit() {
+  errno = 0;
+  if (std::fclose(file_.release()) != 0) {
+    error_ = detail::system_message(errno);
+    return false;
+  }
+  std::error_code problem;
+  std::filesystem::rename(temporary_, path_, problem);  // unlike std::rename also replaces on Windows
+  if (problem) error_ = problem.message();
+  open_ = static_cast<bool>(problem);
+  return !problem;
+}
+
+inline void AtomicFile::discard() noexcept {
+  file_.reset();
+  std::remove(temporary_.c_str());
+}
+
+inline std::string AtomicFile::unique_digits() {
+  static std::atomic<std::uint64_t> calls{0};
+  ContentHash hash;
+  hash.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
+  hash.add(static_cast<std::uint64_t>(std::hash<std::thread::id>()(std::this_thread::get_id())));
+  hash.add(calls.fetch_add(1));
+  std::array<char, digits + 1> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash.digest()));
+  return text.data();
+}
+
+inline bool AtomicFile::is_leftover(const std::filesystem::path& file) const {
+  using Name = std::filesystem::path::string_type;  // a name on Windows need not exist as std::string
+  const Name name = file.filename().native(), hexadecimal = std::filesystem::path("0123456789abcdef").native();
+  const Name start = std::filesystem::path(path_ + suffix).filename().native();
+  if (name.size() != start.size() + digits || !name.starts_with(start)) return false;
+  return name.find_first_not_of(hexadecimal, start.size()) == Name::npos;
+}
+
+inline void AtomicFile::remove_leftovers() const {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path folder = fs::path(path_).parent_path();
+  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (fs::directory_iterator it(folder.empty() ? fs::path(".") : folder, ignored), end; !ignored && it != end;
+       it.increment(ignored)) {
+    if (!is_leftover(it->path())) continue;
+    std::error_code unknown;
+    if (const auto written = fs::last_write_time(it->path(), unknown); !unknown && written < old)
+      fs::remove(it->path(), unknown);
+  }
+}
+
+}}  // namespace palpate

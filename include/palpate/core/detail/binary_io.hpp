@@ -1,9 +1,12 @@
-// Bulk transfer of arrays to and from a binary file, with a hash of the transferred bytes.
+// Bulk transfer of arrays and matrices to and from a binary file, with a hash of the transferred bytes.
 #pragma once
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/content_hash.hpp>
+#include <palpate/core/setup_options.hpp>
+#include <palpate/core/types.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,7 +27,9 @@ struct FileClose {
 using File = std::unique_ptr<std::FILE, FileClose>;
 
 /// The operating system's message for an errno value.
-std::string system_message(int error);
+inline std::string system_message(int error) {
+  return error == 0 ? std::string("an unknown error") : std::generic_category().message(error);
+}
 
 }  // namespace detail
 
@@ -108,8 +113,57 @@ class BinaryReader {
   ReadFailure failure_ = ReadFailure::none;
 };
 
-}}  // namespace palpate
+namespace detail {
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/core/detail/binary_io.ipp>
-#endif
+/// Writes all entries by columns; a null pointer is written as an empty matrix.
+template <class Matrix>
+void write_dense(BinaryWriter& out, const Matrix* matrix) {
+  using Scalar = typename Matrix::Scalar;
+  if (matrix == nullptr) return out.array(std::span<const Scalar>());
+  out.array(std::span<const Scalar>(matrix->data(), static_cast<std::size_t>(matrix->size())));
+}
+
+/// Reads a matrix that must be size x size in the file. Throws too_large before it allocates.
+template <class Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_dense(BinaryReader& in, Index size,
+                                                                 const SetupLimits& limits) {
+  limits.require_memory(static_cast<double>(size) * static_cast<double>(size) * sizeof(Scalar), "a stored matrix");
+  Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix;
+  if (!in.good()) return matrix;
+  matrix.resize(size, size);
+  in.array(std::span<Scalar>(matrix.data(), static_cast<std::size_t>(matrix.size())));
+  return matrix;
+}
+
+/// Bytes per step of hashing and file access, small enough to stay in the cache between the two. Part of the file
+/// format.
+inline constexpr std::size_t binary_chunk = std::size_t{1} << 18;
+
+}  // namespace detail
+
+inline void BinaryWriter::bytes(const void* data, std::size_t size) noexcept {
+  const auto* from = static_cast<const char*>(data);
+  for (std::size_t n = 0; size > 0 && good(); from += n, size -= n) {
+    n = std::min(size, detail::binary_chunk);
+    hash_.add(std::span<const char>(from, n));
+    errno = 0;
+    if (std::fwrite(from, 1, n, file_) != n) error_ = errno;
+    written_ += n;
+  }
+}
+
+inline bool BinaryReader::bytes(void* data, std::size_t size) noexcept {
+  auto* to = static_cast<char*>(data);
+  for (std::size_t n = 0; size > 0 && good(); to += n, size -= n) {
+    n = std::min(size, detail::binary_chunk);
+    if (std::fread(to, 1, n, file_) != n) {
+      failure_ = ReadFailure::ended;
+      break;
+    }
+    hash_.add(std::span<const char>(to, n));
+    read_ += n;
+  }
+  return good();
+}
+
+}}  // namespace palpate

@@ -1,14 +1,33 @@
-// Arithmetic of small vectors and matrices without Eigen's expressions: same notation, values as results, and fewer
-// types for the compiler to instantiate.
+// Types of vectors, matrices and indices. Arithmetic of small vectors and matrices without Eigen's expressions: same
+// notation, values as results, and fewer types for the compiler to instantiate.
 #pragma once
 
-#include <palpate/core/vector_types.hpp>
+#include <palpate/core/config.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+/// Counts and offsets. 64 bits, because (3 x surface nodes)^2 overflows 32 bits from 15 447 nodes on.
+using Index = std::int64_t;
+/// A node of a mesh, as stored in connectivity.
+using NodeId = std::int32_t;
+
+using Vector2 = Eigen::Vector2d;
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+/// Stress or strain in Voigt order (core/voigt.hpp).
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// Elasticity matrix in Voigt order.
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+/// Derivative of one 3 x 3 tensor by another, both in column-major order (core/tensor3.hpp).
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+using VectorX = Eigen::VectorXd;
+using MatrixX = Eigen::MatrixXd;
 
 namespace detail {
 
@@ -16,6 +35,18 @@ template <class M>
 concept Small = std::same_as<M, Matrix3> || std::same_as<M, Vector6> || std::same_as<M, Matrix6>;
 template <class T, class M>
 concept TransposeOf = std::same_as<T, Eigen::Transpose<M>> || std::same_as<T, Eigen::Transpose<const M>>;
+
+/// The matrix with these rows. Eigen's comma initialiser and blocks would add a second to the compile time of every
+/// program that includes an element. No loop, so that the compiler propagates constant entries.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns> matrix_of_rows(const double (&rows)[Rows][Columns]) noexcept {
+  Eigen::Matrix<double, Rows, Columns> m;
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    ((m.data()[k] = rows[k % Rows][k / Rows]), ...);
+  }
+  (std::make_integer_sequence<int, Rows * Columns>());
+  return m;
+}
 
 /// Product of 3 x 3 matrices whose entry (i, j) is data[i * Row + j * Column]: strides 1, 3 for a Matrix3, 3, 1 for its
 /// transpose.

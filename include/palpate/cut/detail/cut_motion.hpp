@@ -8,8 +8,8 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_topology.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/model/detail/deformable_body.hpp>

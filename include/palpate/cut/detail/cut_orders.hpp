@@ -3,13 +3,14 @@
 
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/spsc_ring.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -24,10 +25,22 @@ class CutOrders {
     unsigned count = 0;
   };
 
-  void add(CutOrder order);
-  void add(const BladeSweep& sweep);
+  void add(CutOrder order) {
+    const std::scoped_lock lock(mutex_);
+    orders_.push_back(std::move(order));
+    open_.fetch_add(1, std::memory_order_release);
+  }
+  void add(const BladeSweep& sweep) {
+    const std::scoped_lock lock(mutex_);
+    sweeps_.push_back(sweep);
+    open_.fetch_add(1, std::memory_order_release);
+  }
   /// From the thread that ticks; false when 256 sweeps are waiting. Neither waits nor allocates.
-  bool try_add(const BladeSweep& sweep) noexcept;
+  bool try_add(const BladeSweep& sweep) noexcept {
+    if (!from_ticks_.push(sweep)) return false;
+    open_.fetch_add(1, std::memory_order_release);
+    return true;
+  }
 
   /// Called by one thread at a time. Without memory it throws, and all orders stay.
   Taken take();
@@ -42,6 +55,26 @@ class CutOrders {
   SpscRing<BladeSweep, most_from_ticks> from_ticks_;
   std::atomic<unsigned> open_{0};
 };
+
+inline CutOrders::Taken CutOrders::take() {
+  Taken taken;
+  if (!are_open()) return taken;
+  {
+    const std::scoped_lock lock(mutex_);
+    taken.count = static_cast<unsigned>(orders_.size() + sweeps_.size());
+    for (const CutOrder& order : orders_) {
+      taken.order.remove.insert(taken.order.remove.end(), order.remove.begin(), order.remove.end());
+      taken.order.open.insert(taken.order.open.end(), order.open.begin(), order.open.end());
+    }
+    sweeps_.reserve(sweeps_.size() + most_from_ticks);  // from here on nothing allocates
+    orders_.clear();
+    taken.sweeps.swap(sweeps_);
+  }
+  BladeSweep sweep;
+  for (std::size_t k = 0; k < most_from_ticks && from_ticks_.pop(sweep); ++k, ++taken.count)
+    taken.sweeps.push_back(sweep);
+  return taken;
+}
 
 /// Whether somebody processes orders: for the thread that does, and the one that ticks.
 class CutServed {
@@ -86,7 +119,3 @@ class CutServed {
 };
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/cut/detail/cut_orders.ipp>
-#endif

@@ -11,6 +11,7 @@
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -26,6 +27,30 @@ struct RestingEdge {
   bool is_crossed(const Vector3& p0, const Vector3& q0, const Vector3& p1, const Vector3& q1) const noexcept;
 };
 
+inline bool RestingEdge::is_crossed(const Vector3& p0, const Vector3& q0, const Vector3& p1,
+                                    const Vector3& q1) const noexcept {
+  // Seen along the edge, it is the origin: p x q is quadratic in time, and zero when they are in line with it.
+  constexpr double rounding = 1e-9;  // of the time
+  const Vector3 d = b - a, p = p0 - a, q = q0 - a, v = p1 - p0, w = q1 - q0;
+  const double length = d.norm();
+  const auto is_between = [&](double t) {
+    if (!(t >= -rounding && t <= 1.0 + rounding)) return false;
+    const Vector3 x = p + t * v, y = q + t * w;
+    const double at_x = x.dot(d) / length, at_y = y.dot(d) / length;
+    const Vector3 across_x = x - at_x / length * d, across_y = y - at_y / length * d;
+    if (!(across_x.dot(across_y) <= 0.0)) return false;
+    const double near = across_x.norm(), far = across_y.norm();
+    const double place = near + far > 0.0 ? (at_x * far + at_y * near) / (near + far) : 0.5 * (at_x + at_y);
+    return place >= -rounding * length && place <= (1.0 + rounding) * length;
+  };
+  const double constant = d.dot(cross(p, q)), linear = d.dot(cross(p, w)) + d.dot(cross(v, q)),
+               square = d.dot(cross(v, w));
+  const double inside = linear * linear - 4.0 * square * constant;
+  if (!(inside >= 0.0)) return false;
+  const double half = -0.5 * (linear + std::copysign(std::sqrt(inside), linear));
+  return (square != 0.0 && is_between(half / square)) || (half != 0.0 && is_between(constant / half));
+}
+
 /// The last edges of recent sweeps, with the positions of the nodes that those swept.
 class RestingEdges {
  public:
@@ -33,7 +58,11 @@ class RestingEdges {
   using Positions = std::vector<Vector3>;
 
   /// The positions at the end of the sweep that this one continues, null if there is none. Both in the world's frame.
-  const Positions* find(const BladeSweep& next) const noexcept;
+  const Positions* find(const BladeSweep& next) const noexcept {
+    for (auto edge = edges_.rbegin(); edge != edges_.rend(); ++edge)
+      if (edge->a == next.a0 && edge->b == next.b0) return edge->positions.get();
+    return nullptr;
+  }
   /// Takes in sweeps, in the world's frame, through nodes at these positions.
   void rest(const std::vector<BladeSweep>& sweeps, Positions positions);
   void clear() noexcept { edges_.clear(); }
@@ -45,6 +74,15 @@ class RestingEdges {
   };
   std::vector<Edge> edges_;
 };
+
+inline void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, Positions positions) {
+  const auto shared = std::make_shared<const Positions>(std::move(positions));
+  for (const BladeSweep& s : sweeps) {
+    std::erase_if(edges_, [&](const Edge& edge) { return edge.a == s.a0 && edge.b == s.b0; });
+    edges_.push_back({s.a1, s.b1, shared});
+  }
+  if (edges_.size() > most) edges_.erase(edges_.begin(), edges_.end() - most);
+}
 
 /// The faces between elements whose centres are on opposite sides of the sheet, if the line between the centres crosses
 /// it: the element faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the
@@ -134,7 +172,3 @@ CutOrder combined(const CutOrders::Taken& taken, const CutTopology<E>& topology,
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/cut/detail/swept_faces.ipp>
-#endif

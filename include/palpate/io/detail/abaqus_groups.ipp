@@ -3,7 +3,6 @@
 
 #include <palpate/io/detail/abaqus_groups.hpp>
 #include <palpate/io/detail/abaqus_lines.hpp>
-#include <palpate/io/detail/abaqus_types.hpp>
 #include <palpate/io/detail/node_order.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
 

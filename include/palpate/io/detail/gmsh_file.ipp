@@ -1,9 +1,9 @@
-// Definitions of gmsh_file.hpp.
+// Definitions of read_mesh.hpp: reads whole Gmsh files, their format and sections.
 #pragma once
 
-#include <palpate/io/detail/gmsh_file.hpp>
 #include <palpate/io/detail/gmsh_msh2.hpp>
 #include <palpate/io/detail/gmsh_msh4.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 

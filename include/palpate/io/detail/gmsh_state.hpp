@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/io/detail/gmsh_types.hpp>
+#include <palpate/io/detail/id_table.hpp>
 #include <palpate/io/detail/labels.hpp>
-#include <palpate/io/detail/node_ids.hpp>
 #include <palpate/io/detail/numbers.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
 

@@ -1,10 +1,10 @@
-// Definitions of mesh_builder.hpp.
+// Definitions of read_mesh.hpp: converts a parsed file to a mesh of one element type.
 #pragma once
 
-#include <palpate/io/detail/mesh_builder.hpp>
+#include <palpate/io/detail/id_table.hpp>
 #include <palpate/io/detail/node_order.hpp>
-#include <palpate/io/detail/sorting.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
+#include <palpate/io/read_mesh.hpp>
 
 #include <algorithm>
 #include <cmath>

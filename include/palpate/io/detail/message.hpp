@@ -4,7 +4,9 @@
 
 #include <palpate/core/setup_error.hpp>
 
+#include <array>
 #include <bit>
+#include <charconv>
 #include <concepts>
 #include <initializer_list>
 #include <string>
@@ -57,10 +59,16 @@ class Pieces {
 };
 
 /// The pieces as a text.
-std::string joined(const Pieces& pieces);
+PALPATE_COLD inline std::string joined(const Pieces& pieces) {
+  std::string text;
+  for (const Piece& piece : pieces) piece.add_to(text);
+  return text;
+}
 
 /// Adds the pieces to the end of `text`.
-void append(std::string& text, std::initializer_list<Piece> pieces);
+inline void append(std::string& text, std::initializer_list<Piece> pieces) {
+  for (const Piece& piece : pieces) piece.add_to(text);
+}
 
 /// A word for a message: in quotes, shortened, printable.
 constexpr Piece in_quotes(std::string_view word) noexcept {
@@ -68,10 +76,36 @@ constexpr Piece in_quotes(std::string_view word) noexcept {
 }
 
 /// Throws SetupError.
-[[noreturn]] void refuse(SetupErrorKind kind, const Pieces& what, const Pieces& hint = {});
+[[noreturn]] PALPATE_COLD inline void refuse(SetupErrorKind kind, const Pieces& what, const Pieces& hint = {}) {
+  raise(kind, joined(what), joined(hint));
+}
+
+namespace detail {
+
+PALPATE_COLD inline void append_quoted(std::string& text, std::string_view word) {
+  if (word.empty()) {
+    text.append("the end of the line");
+    return;
+  }
+  text += '\'';
+  for (const char c : word.substr(0, 40)) text += c < ' ' || c > '~' ? '?' : c;
+  text.append(word.size() > 40 ? "...'" : "'");
+}
+
+}  // namespace detail
+
+inline void Piece::add_to(std::string& text) const {
+  if (kind_ == Kind::text) {
+    text.append(text_, static_cast<std::size_t>(value_));
+  } else if (kind_ == Kind::integer) {
+    std::array<char, 24> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value_).ptr;
+    text.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+  } else if (kind_ == Kind::real) {
+    text.append(number(std::bit_cast<double>(value_)));
+  } else {
+    detail::append_quoted(text, {text_, static_cast<std::size_t>(value_)});
+  }
+}
 
 }}}  // namespace palpate::PALPATE_ABI::io
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/io/detail/message.ipp>
-#endif

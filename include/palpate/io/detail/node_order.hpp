@@ -1,8 +1,11 @@
 // The order in which formats and elements list the nodes of a cell.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/io/detail/cell_shape.hpp>
+#include <palpate/io/detail/message.hpp>
 
+#include <cmath>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
@@ -65,8 +68,100 @@ std::array<int, static_cast<std::size_t>(E::nodes)> vtk_order() {
   return result;
 }
 
-}}}  // namespace palpate::PALPATE_ABI::io
+namespace detail {
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/io/detail/node_order.ipp>
-#endif
+using Point = std::array<double, 3>;
+
+inline Point difference(const double* a, const double* b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+inline Point cross_product(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline double dot_product(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Position of VTK's corner k on the domain of nodes_on_unit_domain.
+inline Point vtk_corner(bool is_tetrahedron, int k) {
+  if (is_tetrahedron) return {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0, k == 3 ? 1.0 : 0.0};
+  const auto& x = hexahedron_corners[static_cast<std::size_t>(k)];
+  return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
+}
+
+/// The same for any node.
+PALPATE_COLD inline Point vtk_node(bool is_tetrahedron, int k) {
+  const int corners = is_tetrahedron ? 4 : 8;
+  if (k < corners) return vtk_corner(is_tetrahedron, k);
+  const auto& ends = is_tetrahedron ? tetrahedron_edges[static_cast<std::size_t>(k - 4)]
+                                    : hexahedron_edges[static_cast<std::size_t>(k - 8)];
+  const Point a = vtk_corner(is_tetrahedron, ends[0]), b = vtk_corner(is_tetrahedron, ends[1]);
+  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+}
+
+/// Solves for the weights of the edges from the first node to the next three.
+inline void to_unit_tetrahedron(double* xyz, int nodes) {
+  const Point origin{xyz[0], xyz[1], xyz[2]};
+  const Point a = difference(xyz + 3, xyz), b = difference(xyz + 6, xyz), c = difference(xyz + 9, xyz);
+  const Point bc = cross_product(b, c), ca = cross_product(c, a), ab = cross_product(a, b);
+  const double volume = dot_product(a, bc);
+  for (int i = 0; i < nodes; ++i) {
+    double* x = xyz + 3 * i;
+    const Point d = difference(x, origin.data());
+    x[0] = dot_product(d, bc) / volume;
+    x[1] = dot_product(d, ca) / volume;
+    x[2] = dot_product(d, ab) / volume;
+  }
+}
+
+inline void to_unit_cube(double* xyz, int nodes) {
+  for (int c = 0; c < 3; ++c) {
+    double low = xyz[c], high = xyz[c];
+    for (int i = 0; i < nodes; ++i) {
+      low = std::min(low, xyz[3 * i + c]);
+      high = std::max(high, xyz[3 * i + c]);
+    }
+    for (int i = 0; i < nodes; ++i) xyz[3 * i + c] = (xyz[3 * i + c] - low) / (high - low);
+  }
+}
+
+}  // namespace detail
+
+PALPATE_COLD inline void nodes_on_unit_domain(const ElementLayout& element, double* xyz) {
+  element.reference_nodes(xyz);
+  if (element.face_count == 4)
+    detail::to_unit_tetrahedron(xyz, element.nodes);
+  else
+    detail::to_unit_cube(xyz, element.nodes);
+}
+
+PALPATE_COLD inline std::vector<int> element_order(const ElementLayout& element) {
+  std::vector<double> xyz(3 * static_cast<std::size_t>(element.nodes));
+  nodes_on_unit_domain(element, xyz.data());
+  std::vector<int> order(static_cast<std::size_t>(element.nodes));
+  for (int a = 0; a < element.nodes; ++a) {
+    const auto is_at = [&](int k) {
+      const detail::Point d =
+          detail::difference(detail::vtk_node(element.face_count == 4, k).data(), xyz.data() + 3 * a);
+      return detail::dot_product(d, d) <= 1e-12;
+    };
+    int k = 0;
+    while (k < element.nodes && !is_at(k)) ++k;
+    if (k == element.nodes)
+      refuse(SetupErrorKind::bad_argument,
+             {"reference node ", a, " of the element is neither a corner nor the middle of an edge"});
+    order[static_cast<std::size_t>(a)] = k;
+  }
+  return order;
+}
+
+PALPATE_COLD inline std::vector<int> vtk_order(const ElementLayout& element) {
+  const std::vector<int> from = element_order(element);
+  std::vector<int> order(from.size());
+  for (std::size_t a = 0; a < from.size(); ++a) order[static_cast<std::size_t>(from[a])] = static_cast<int>(a);
+  return order;
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io

@@ -22,7 +22,9 @@ class Lines {
   /// Moves to the next line that is not blank; false at the end of the first file.
   bool next_line();
 
-  void need_line(std::string_view expected);
+  void need_line(std::string_view expected) {
+    if (!next_line()) in().refuse(SetupErrorKind::bad_file, expected, "the end of the file");
+  }
 
   /// The next call of next_line() stays on the current line.
   void stay() noexcept { stays_ = true; }
@@ -51,8 +53,44 @@ class Lines {
   bool stays_ = false;
 };
 
-}}}  // namespace palpate::PALPATE_ABI::io::veg
+PALPATE_COLD inline Lines::Lines(std::string_view text, const std::string& name, Lines::Include include)
+    : include_(std::move(include)) {
+  open_.push_back({{}, TextReader(text, name, syntax)});
+  names.push_back(name);
+  file_.push_back(0);
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/io/detail/veg_lines.ipp>
-#endif
+inline bool Lines::next_line() {
+  if (stays_) return !(stays_ = false);
+  for (;;) {
+    while (!in().next_line()) {
+      const bool is_open_list = reads_list && open_.size() > 1 && !in().has_last_line_end();
+      if (is_open_list)
+        notes.push_back(joined({in().name(), " has no line end after its last line: is its last number whole?"}));
+      else
+        in().need_last_line_end();
+      if (open_.size() == 1) return false;
+      open_.pop_back();
+      file_.pop_back();
+    }
+    if (!in().line().starts_with(mark)) return true;
+    open();
+  }
+}
+
+PALPATE_COLD inline void Lines::open() {
+  TextReader& at = in();
+  at.token();
+  const std::string name(at.rest());
+  if (open_.size() >= 8 || names.size() >= 64)
+    at.refuse(SetupErrorKind::unsupported, "at most 8 files inside each other and 64 in all", "one more");
+  if (name.empty() || name.front() == '/' || name.front() == '\\' || name.find("..") != name.npos ||
+      name.find(':') != name.npos)
+    at.refuse(SetupErrorKind::unsupported, "a file in the folder of this one", in_quotes(name));
+  open_.push_back({include_(name), TextReader({}, name)});
+  open_.back().reader = TextReader(open_.back().text, name, syntax);
+  file_.push_back(static_cast<std::uint8_t>(names.size()));
+  names.push_back(name);
+}
+
+}}}  // namespace palpate::PALPATE_ABI::io::veg

@@ -1,7 +1,7 @@
-// Types of the dense kernels of the sparse solver.
+// Types of the dense kernels of the sparse solver, and the threads that share the work on one front.
 #pragma once
 
-#include <palpate/linear/detail/front_team.hpp>
+#include <palpate/core/types.hpp>
 
 #include <array>
 #include <cstdint>
@@ -10,6 +10,23 @@ namespace palpate {
 
 // The same types for all compiler flags: the kernels may be compiled with other flags than their callers.
 namespace any_flags {
+
+/// Distributes independent pieces of work.
+class FrontTeam {
+ public:
+  /// Calls piece(0) ... piece(count - 1), each once or, after a cancellation, not at all, and returns when all have
+  /// returned.
+  template <class Piece>
+  void each(std::int64_t count, Piece& piece) noexcept {
+    run(count, &piece, [](void* p, std::int64_t i) { (*static_cast<Piece*>(p))(i); });
+  }
+
+ protected:
+  ~FrontTeam() = default;
+
+ private:
+  virtual void run(std::int64_t count, void* piece, void (*call)(void*, std::int64_t)) noexcept = 0;
+};
 
 /// The dense part of the elimination of a front. Arrays have the layout of LowerPanels.
 struct FrontJob {
@@ -71,4 +88,16 @@ extern const Kernels kernels_avx2, kernels_avx512;
 
 }  // namespace any_flags
 
-}  // namespace palpate
+inline namespace PALPATE_ABI { namespace detail {
+
+using any_flags::FrontTeam;
+
+/// The same, in the calling thread when there is no team.
+template <class Piece>
+inline void share(FrontTeam* team, Index count, Piece&& piece) noexcept {
+  if (team != nullptr) return team->each(count, piece);
+  for (Index i = 0; i < count; ++i) piece(i);
+}
+
+}}
+}  // namespace palpate::detail

@@ -1,7 +1,6 @@
 // Finds a small set of nodes that separates a part of a graph into two balanced halves.
 #pragma once
 
-#include <palpate/linear/detail/bipartite_cover.hpp>
 #include <palpate/linear/detail/flow_separator.hpp>
 #include <palpate/linear/detail/part_lists.hpp>
 #include <palpate/linear/detail/separator_refinement.hpp>

@@ -1,13 +1,28 @@
-// Functions of the deformation gradient for large-strain materials, and their derivatives.
+// For large-strain materials: Lame's constants in the number type of a kernel, functions of the deformation gradient
+// and their derivatives, and materials in terms of the invariants I = |F|^2, II = |cof F|^2 and J = det F.
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/lanes.hpp>
 #include <palpate/core/tensor3.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/material/linear_elastic.hpp>
 
 #include <Eigen/LU>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// Lame's constants [Pa] for a kernel on S.
+template <class S>
+struct Lame {
+  scalar_of<S> lambda, mu;
+};
+
+/// Two divisions, which a compiler moves out of a loop when the material is a local variable.
+template <class S>
+PALPATE_ALWAYS_INLINE Lame<S> lame(const LinearElastic& material) noexcept {
+  return {static_cast<scalar_of<S>>(material.lame_lambda()), static_cast<scalar_of<S>>(material.shear_modulus())};
+}
 
 /// J - 1 of F = I + h, without the cancellation that det F - 1 has at small strain.
 template <class S>
@@ -65,6 +80,32 @@ inline void add_strain_product(Matrix9& b, double factor, const Tensor3<double>&
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
           b(i + 3 * j, k + 3 * l) += factor * (f(i, l) * f(k, j) + (j == l ? left(i, k) : 0.0));
+}
+
+/// First derivatives of W by I, II and J, and those second derivatives that are not zero for the materials here.
+struct InvariantDerivatives {
+  double first = 0.0, second = 0.0, volume = 0.0;
+  double first_volume = 0.0, second_volume = 0.0, volume_volume = 0.0;
+};
+
+/// dP/dF of a material in these invariants.
+inline Matrix9 tangent_of_invariants(const Tensor3<double>& f, const InvariantDerivatives& w) noexcept {
+  using Column = Eigen::Matrix<double, 9, 1>;
+  const Tensor3<double> c = cofactor(f), right = transpose_product(f, f);
+  const Tensor3<double> of_second = 2.0 * (plus_identity(-1.0 * (f * transpose(f)), contract(f, f)) * f);
+  const Column dj = vector9(c), di = 2.0 * vector9(f), dii = vector9(of_second);
+  Matrix9 t = w.volume * cofactor_derivative(f);
+  t += (w.volume_volume * dj) * dj.transpose();
+  t += w.first_volume * (di * dj.transpose() + dj * di.transpose());
+  if (w.second != 0.0 || w.second_volume != 0.0) {
+    t += w.second_volume * (dii * dj.transpose() + dj * dii.transpose());
+    t += w.second * (di * di.transpose());
+    t.diagonal().array() += 2.0 * w.second * contract(f, f);
+    add_right_product(t, -2.0 * w.second, right);
+    add_strain_product(t, -2.0 * w.second, f);
+  }
+  t.diagonal().array() += 2.0 * w.first;
+  return t;
 }
 
 }}}  // namespace palpate::detail

@@ -1,14 +1,18 @@
-// Makes the admitted mesh of a model from a mesh as given, with the origin at the centre of its bounding box.
+// Makes the admitted mesh or body of a model from a mesh as given, with the origin at the centre of its bounding box.
 #pragma once
 
+#include <palpate/assembly/body.hpp>
 #include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/mesh/admission.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/admission_report.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/detail/stage_timer.hpp>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -42,5 +46,21 @@ AdmittedMesh<E> admit_mesh(const Given& mesh, const Scene& scene, const Admissio
   for (Vector3& x : admitted.mesh.positions) x -= origin;
   return {std::move(admitted.mesh), std::move(admitted.node_map), std::move(ids), origin};
 }
+
+namespace detail {
+
+/// Admits a mesh and evaluates its materials. Reports what admission found. Throws the errors of materials_by_region
+/// and admit.
+template <Element E, LinearMaterial M, MeshOf<E> Given>
+AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                        const AdmissionPolicy& policy, const SetupLimits& limits, SetupReport& report) {
+  const std::vector<M> by_region = materials_by_region(mesh, materials);
+  AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, policy, limits, report);
+  const ScopedIdTranslation translation(admitted.ids);
+  auto body = std::make_unique<ElementBody<E>>(make_body(std::move(admitted.mesh), by_region), admitted.origin);
+  return {std::move(body), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin};
+}
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -6,9 +6,7 @@
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/detail/elastic_forces.hpp>
 #include <palpate/assembly/detail/essential_conditions.hpp>
-#include <palpate/assembly/detail/linear_forces.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
-#include <palpate/assembly/detail/smoothed_strain.hpp>
 #include <palpate/assembly/detail/viscous_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/large_strain.hpp>
@@ -16,16 +14,18 @@
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
+#include <palpate/core/detail/box.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/loads.hpp>
 #include <palpate/mesh/detail/mechanisms.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,16 +44,38 @@ struct DeformableBody {
 };
 
 /// Diagonal of the bounding box of a body [m].
-double extent(const std::vector<Vector3>& positions);
+inline double extent(const std::vector<Vector3>& positions) {
+  return box_of(positions).size().norm();
+}
 
 /// Throws bad_density when a free node has no mass.
-void require_mass(const DeformableBody& body);
+inline void require_mass(const DeformableBody& body) {
+  for (Index i = 0; i < body.lumped.size(); ++i)
+    if (!(body.lumped[i] > 0.0) && body.conditions.constrained[static_cast<std::size_t>(i)] != 7)
+      raise_at(SetupIds::nodes, i, SetupErrorKind::bad_density, "a node has no mass",
+               "Give every region a density in kg/m^3");
+}
 
 namespace detail {
 
 /// Sets the nodal masses [kg] that remain after elements have left. Nodes that lose all mass are constrained at their
 /// displacement in u [m]. Returns the dofs of these nodes that were free.
-std::vector<Index> leave_mass(DeformableBody& body, const VectorX& nodal_mass, const VectorX& u);
+inline std::vector<Index> leave_mass(DeformableBody& body, const VectorX& nodal_mass, const VectorX& u) {
+  EssentialConditions& c = body.conditions;
+  std::vector<Index> bare;
+  for (Index dof = 0; dof < u.size(); ++dof) {
+    if (nodal_mass[dof / 3] > 0.0 || !(body.lumped[dof / 3] > 0.0)) continue;
+    c.prescribed[dof] = u[dof];
+    if (c.free_index[static_cast<std::size_t>(dof)] >= 0) bare.push_back(dof);
+    c.free_index[static_cast<std::size_t>(dof)] = -1;
+    c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
+  }
+  std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
+  for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
+    c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
+  body.lumped = nodal_mass;
+  return bare;
+}
 
 /// Everything except the forces and the mass.
 template <Element E>
@@ -88,7 +110,11 @@ DeformableBody constrained_body_without_forces(const Body<E>& rest, const Scene&
   return body;
 }
 
-void refuse_initial_strains(const Scene& scene);
+inline void refuse_initial_strains(const Scene& scene) {
+  if (!scene.initial_strains().empty())
+    raise(SetupErrorKind::unsupported, "initial strains at large deformation or with viscoelasticity",
+          "Use a linear material");
+}
 
 /// Makes a material body from a mesh and materials at large or small strain.
 template <Element E, LargeStrainMaterial M>
@@ -167,7 +193,3 @@ DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, co
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/detail/deformable_body.ipp>
-#endif

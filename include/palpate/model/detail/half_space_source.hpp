@@ -2,14 +2,14 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/detail/node_lists.hpp>
+#include <palpate/assembly/detail/node_elements.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/contact/detail/projected_half_space.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/surface.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
-#include <palpate/quadrature/triangle.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 #include <array>
 #include <span>

@@ -1,7 +1,7 @@
 // Definitions of project_half_space.hpp.
 #pragma once
 
-#include <palpate/core/detail/thread_ranges.hpp>
+#include <palpate/core/executor.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/local/detail/split_elasticity.hpp>
 #include <palpate/model/detail/patch_projection.hpp>

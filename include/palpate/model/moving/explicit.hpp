@@ -2,14 +2,13 @@
 #pragma once
 
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/detail/elastic_forces.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
-#include <palpate/assembly/detail/linear_forces.hpp>
 #include <palpate/assembly/detail/viscous_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
-#include <palpate/integrator/central_difference.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
-#include <palpate/integrator/semi_implicit_euler.hpp>
-#include <palpate/model/moving/detail/settled.hpp>
+#include <palpate/integrator/explicit_schemes.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 #include <palpate/model/moving/moving_model.hpp>
 
 #include <algorithm>

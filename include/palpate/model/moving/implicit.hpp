@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/model/moving/detail/corotated_motion.hpp>
-#include <palpate/model/moving/detail/settled.hpp>
+#include <palpate/model/moving/equilibrium.hpp>
 #include <palpate/model/moving/implicit_dynamics.hpp>
 #include <palpate/model/moving/moving_model.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
@@ -18,23 +18,39 @@ class ImplicitMotion final : public TissueMotion {
  public:
   static constexpr double tolerable_residual = 0.05;
 
-  ImplicitMotion(DeformableBody body, const DynamicsParameters& parameters, const SetupLimits& limits);
+  ImplicitMotion(DeformableBody body, const DynamicsParameters& parameters, const SetupLimits& limits)
+      : motion_(std::move(body), parameters, limits) {}
 
   MotionStep step(double h) noexcept override;
-  bool correct(const VectorX& more) noexcept override;
-  bool set_springs(std::span<const ContactSpring> springs) noexcept override;
-  bool prepare_response(double h) noexcept override;
-  bool respond(const VectorX& forces, VectorX& u) noexcept override;
-  bool respond_here(const VectorX& forces, VectorX& u) noexcept override;
-  const VectorX& displacement() const noexcept override;
-  const VectorX& velocity() const noexcept override;
-  void rest_at(const VectorX& u) override;
-  void set_load(const VectorX& load) override;
-  void set_prescribed(const VectorX& values) override;
+  bool correct(const VectorX& more) noexcept override { return motion_.correct(more); }
+  bool set_springs(std::span<const ContactSpring> springs) noexcept override {
+    motion_.set_springs(springs);
+    return true;
+  }
+  bool prepare_response(double h) noexcept override { return motion_.prepare_response(h); }
+  bool respond(const VectorX& forces, VectorX& u) noexcept override { return motion_.respond(forces, u); }
+  bool respond_here(const VectorX& forces, VectorX& u) noexcept override {
+    return motion_.is_factorised() && motion_.respond(forces, u);
+  }
+  const VectorX& displacement() const noexcept override { return motion_.displacement(); }
+  const VectorX& velocity() const noexcept override { return motion_.velocity(); }
+  void rest_at(const VectorX& u) override { motion_.rest_at(u); }
+  void set_load(const VectorX& load) override { motion_.set_load(load); }
+  void set_prescribed(const VectorX& values) override { motion_.set_prescribed(values); }
 
  private:
   ImplicitDynamics motion_;
 };
+
+inline MotionStep ImplicitMotion::step(double h) noexcept {
+  const StepReport done = motion_.step(h);
+  MotionStep step{done.taken, {}, done.deformation};
+  if (done.deformation.inverted > 0) step.status.set(StatusFlag::inverted);
+  if (done.deformation.beyond_range > 0) step.status.set(StatusFlag::material_exceeded);
+  const bool accurate = done.newton.converged || done.newton.relative_residual <= tolerable_residual;
+  if (!done.taken || !done.energy_bounded || !accurate) step.status.set(StatusFlag::solver_not_converged);
+  return step;
+}
 
 /// Newton's method on the incremental potential of a step, with a factorisation in every iteration. Supports all
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
@@ -168,7 +184,3 @@ inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(De
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/moving/implicit.ipp>
-#endif

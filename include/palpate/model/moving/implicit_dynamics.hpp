@@ -6,7 +6,6 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/integrator/detail/implicit_step.hpp>
 #include <palpate/integrator/newton.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 #include <palpate/model/detail/deformable_body.hpp>

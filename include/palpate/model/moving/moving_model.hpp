@@ -47,7 +47,10 @@ const auto& rest_body(const MaterialBody& body) noexcept {
 }
 
 /// Throws bad_argument.
-void require_step(double step);
+inline void require_step(double step) {
+  if (!(step > 0.0 && step < infinity))
+    raise(SetupErrorKind::bad_argument, "a step of " + number(step) + " s", "Give a positive time in seconds");
+}
 
 }  // namespace detail
 
@@ -108,7 +111,3 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
 };
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/moving/moving_model.ipp>
-#endif

@@ -6,7 +6,7 @@
 #include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/core/triple_buffer.hpp>
+#include <palpate/core/thread_exchange.hpp>
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/contact_springs.hpp>
 #include <palpate/model/moving/detail/force_agreement.hpp>

@@ -5,7 +5,7 @@
 
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/core/detail/attempt.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/model/admission_report.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
 #include <palpate/model/detail/stage_timer.hpp>

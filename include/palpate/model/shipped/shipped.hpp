@@ -3,13 +3,11 @@
 
 #include <palpate/element/hex20.hpp>
 #include <palpate/element/hex8.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/material/orthotropic.hpp>
-#include <palpate/material/transversely_isotropic.hpp>
 #include <palpate/model/haptic_fe_model.tpp>
 
 /// A model of element E and material M, constructed from a Mesh<GIVEN>. The last argument is the solver. PREFIX is

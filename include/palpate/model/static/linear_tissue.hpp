@@ -3,7 +3,7 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
-#include <palpate/concepts/still_tissue.hpp>
+#include <palpate/concepts/tissue_adaptor.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/model_base.hpp>

@@ -15,7 +15,7 @@
 #include <palpate/core/voigt.hpp>
 #include <palpate/linear/detail/block_lanczos.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
-#include <palpate/mesh/detail/rigid_displacements.hpp>
+#include <palpate/mesh/detail/rigid_modes.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
 
@@ -26,6 +26,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -50,10 +51,15 @@ struct ModalProblem {
   SparseMatrix stiffness, mass;  // lower halves
   MatrixX rigid;
 
-  static MatrixX times(const SparseMatrix& lower, const MatrixX& x);
+  static MatrixX times(const SparseMatrix& lower, const MatrixX& x) {
+    return lower.selfadjointView<Eigen::Lower>() * x;
+  }
 
   /// x^T K x / x^T M x of every column [1/s^2].
-  VectorX rayleigh(const MatrixX& x) const;
+  VectorX rayleigh(const MatrixX& x) const {
+    const VectorX energy = x.cwiseProduct(times(stiffness, x)).colwise().sum().transpose();
+    return energy.cwiseQuotient(x.cwiseProduct(times(mass, x)).colwise().sum().transpose());
+  }
 };
 
 /// Refuses a region without mass: its inertia would be missing from the matrix.
@@ -72,7 +78,16 @@ void require_density(const Body<E>& body) {
   }
 }
 
-void require_count(Index wanted, Index available);
+inline void require_count(Index wanted, Index available) {
+  if (wanted >= 1 && wanted <= available) return;
+  SetupProblem p;
+  p.kind = wanted < 1 ? SetupErrorKind::bad_argument : SetupErrorKind::count_too_large;
+  p.what = std::to_string(wanted) + " natural frequencies are requested, the body has " + std::to_string(available);
+  p.hint = "Request at least one, and at most as many as free dofs minus rigid motions";
+  p.value = static_cast<double>(wanted);
+  p.threshold = static_cast<double>(available);
+  raise(std::move(p));
+}
 
 /// The frequency scale of a body that can move rigidly [1/s^2]: the lowest Rayleigh quotient of the six uniform strains
 /// after their rigid part is removed.
@@ -96,7 +111,17 @@ double uniform_strain_quotient(const Body<E>& body, const EssentialConditions& c
 }
 
 /// Modes of the free dofs as shapes of all nodes, each with its largest component positive.
-MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions);
+inline MatrixX full_shapes(const MatrixX& free, const EssentialConditions& conditions) {
+  MatrixX shapes(conditions.dof_count(), free.cols());
+  VectorX full(conditions.dof_count());
+  for (Index k = 0; k < free.cols(); ++k) {
+    conditions.scatter(free.col(k), full);
+    Index largest = 0;
+    full.cwiseAbs().maxCoeff(&largest);
+    shapes.col(k) = full[largest] < 0.0 ? VectorX(-full) : full;
+  }
+  return shapes;
+}
 
 /// Builds the result from the modes of the free dofs: sorted, on all nodes, with their residuals. A template so that it
 /// is compiled only where it is used.
@@ -124,7 +149,24 @@ NaturalFrequencies natural_frequencies_of(const Problem& problem, const MatrixX&
 
 /// Largest relative difference between theta, computed from the factor only, and the Rayleigh quotients of K and M.
 /// Refuses pairs that did not converge or differ by more than 1e-3.
-double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance);
+inline double require_pairs(const LanczosPairs& pairs, const VectorX& lambda, double shift, double tolerance) {
+  SetupProblem p;
+  p.kind = SetupErrorKind::not_converged;
+  p.hint = "Look for parts that are far softer or far lighter than others";
+  p.value = pairs.residual;
+  p.threshold = tolerance;
+  p.what =
+      "the natural frequencies did not converge: residual " + number(pairs.residual) + ", bound " + number(tolerance);
+  if (!pairs.converged || !all_finite(lambda)) raise(std::move(p));
+  const double rounding = ((lambda.array() - shift) * pairs.theta.array() - 1.0).abs().maxCoeff();
+  if (rounding <= 1e-3) return rounding;
+  p.kind = SetupErrorKind::ill_conditioned;
+  p.what = "rounding changes the square of a natural frequency by a factor of 1 +- " + number(rounding);
+  p.hint = "Parts are too different in stiffness, or the body is too slender";
+  p.value = rounding;
+  p.threshold = 1e-3;
+  raise(std::move(p));
+}
 
 }  // namespace detail
 
@@ -177,7 +219,3 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
 }
 
 }}  // namespace palpate
-
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/static/natural_frequencies.ipp>
-#endif

@@ -1,15 +1,15 @@
 // A static model whose mesh is refined until the error of its contact forces is small enough.
 #pragma once
 
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/mesh_ref.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/scene.hpp>
-#include <palpate/model/accuracy_report.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
+#include <palpate/model/setup_report.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
 
 #include <concepts>

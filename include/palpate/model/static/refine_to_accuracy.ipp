@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>
+#include <palpate/mesh/refine_near.hpp>
 #include <palpate/model/static/refine_to_accuracy.hpp>
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // Advice before a model is made: the element and the mesh for linear tissue that a tool presses, within a budget.
 #pragma once
 
-#include <palpate/assembly/detail/region_materials.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>  // for the suggested code
+#include <palpate/mesh/refine_near.hpp>  // for the suggested code
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/static/detail/suggested_model.hpp>
 

@@ -2,9 +2,14 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/setup_error.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -20,7 +25,9 @@ struct MeasuredComposition {
 };
 
 /// Whether `a` is no worse than `b` in latency and error, and better in one.
-bool dominates(const MeasuredComposition& a, const MeasuredComposition& b) noexcept;
+inline bool dominates(const MeasuredComposition& a, const MeasuredComposition& b) noexcept {
+  return a.latency <= b.latency && a.error <= b.error && (a.latency < b.latency || a.error < b.error);
+}
 
 /// Measured compositions of one scene, and the choice among them. Which one is chosen does not depend on the order in
 /// which they were added.
@@ -32,7 +39,10 @@ class TradeOff {
 
   const std::vector<MeasuredComposition>& all() const noexcept { return all_; }
   /// nullptr when no composition has that name.
-  const MeasuredComposition* find(const std::string& name) const noexcept;
+  const MeasuredComposition* find(const std::string& name) const noexcept {
+    const auto it = std::ranges::find(all_, name, &MeasuredComposition::name);
+    return it == all_.end() ? nullptr : &*it;
+  }
 
   /// The Pareto front: all compositions that are not dominated, in order of rising latency and falling error; ties are
   /// all included. O(n log n).
@@ -41,13 +51,24 @@ class TradeOff {
   /// The smallest error with a latency of at most `seconds`; ties are resolved by lower latency, then less memory, then
   /// shorter set-up, then name. Empty when all are slower. Throws bad_argument for a budget that is NaN or negative;
   /// infinity is allowed. O(compositions).
-  std::optional<MeasuredComposition> most_accurate_within(double seconds) const;
+  std::optional<MeasuredComposition> most_accurate_within(double seconds) const {
+    require_budget(seconds);
+    return best([=](const auto& m) { return m.latency <= seconds; },
+                [](const auto& m) { return std::tie(m.error, m.latency, m.bytes, m.setup_seconds, m.name); });
+  }
   /// The smallest latency with an error of at most `error`; ties are resolved by smaller error, then as above.
-  std::optional<MeasuredComposition> fastest_within(double error) const;
+  std::optional<MeasuredComposition> fastest_within(double error) const {
+    require_budget(error);
+    return best([=](const auto& m) { return m.error <= error; },
+                [](const auto& m) { return std::tie(m.latency, m.error, m.bytes, m.setup_seconds, m.name); });
+  }
 
  private:
   static void require(const std::string& name, const char* what, double value);
-  static void require_budget(double budget);
+  static void require_budget(double budget) {
+    if (!(budget >= 0.0))
+      raise(SetupErrorKind::bad_argument, "the budget is " + number(budget), "Give a number that is not negative");
+  }
   template <class Allowed, class Order>
   std::optional<MeasuredComposition> best(Allowed allowed, Order order) const {
     const MeasuredComposition* found = nullptr;
@@ -59,8 +80,35 @@ class TradeOff {
   std::vector<MeasuredComposition> all_;
 };
 
-}}  // namespace palpate
+inline void TradeOff::add(MeasuredComposition measured) {
+  if (measured.name.empty()) raise(SetupErrorKind::bad_argument, "a measured composition has no name");
+  if (find(measured.name) != nullptr)
+    raise(SetupErrorKind::bad_argument, "'" + measured.name + "' was measured already", "Give every row its own name");
+  require(measured.name, "latency", measured.latency);
+  require(measured.name, "error", measured.error);
+  require(measured.name, "set-up time", measured.setup_seconds);
+  require(measured.name, "memory", measured.bytes);
+  all_.push_back(std::move(measured));
+}
 
-#if PALPATE_HEADER_ONLY
-#include <palpate/model/static/trade_off.ipp>
-#endif
+inline std::vector<MeasuredComposition> TradeOff::front() const {
+  std::vector<MeasuredComposition> sorted = all_, front;
+  std::ranges::sort(sorted, {}, [](const MeasuredComposition& m) { return std::tie(m.latency, m.error, m.name); });
+  for (MeasuredComposition& m : sorted)
+    if (front.empty() || m.error < front.back().error ||
+        (m.error == front.back().error && m.latency == front.back().latency))
+      front.push_back(std::move(m));
+  return front;
+}
+
+inline void TradeOff::require(const std::string& name, const char* what, double value) {
+  if (std::isfinite(value) && value >= 0.0) return;
+  SetupProblem p;
+  p.kind = std::isfinite(value) ? SetupErrorKind::bad_argument : SetupErrorKind::non_finite;
+  p.what = std::string("the ") + what + " of '" + name + "' is " + number(value);
+  p.hint = "Leave out what could not be measured";
+  p.value = value;
+  raise(std::move(p));
+}
+
+}}  // namespace palpate

@@ -11,8 +11,8 @@
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/promote.hpp>
 #include <palpate/post/detail/point_stress.hpp>
-#include <palpate/quadrature/tensor.hpp>
-#include <palpate/quadrature/tetrahedron.hpp>
+#include <palpate/quadrature/gauss_legendre.hpp>
+#include <palpate/quadrature/simplex.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/smoothed_strain.hpp>
+#include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/element/mean_dilatation.hpp>
-#include <palpate/element/smoothed.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
 #include <palpate/local/loads.hpp>
@@ -82,7 +81,7 @@ void require_displacement(const Mesh<E>& mesh, const VectorX& u) {
 
 /// Strain and stress in the elements of a body under the displacement `u` (3 per node [m]). The strain is that of the
 /// element formulation: for mean-dilatation elements with the mean change of volume; for smoothed elements
-/// (element/smoothed.hpp) the average over neighbours, constant in every element and computed for all elements by the
+/// (element/wrappers.hpp) the average over neighbours, constant in every element and computed for all elements by the
 /// constructor. Keeps references to body and displacement.
 template <Element E>
 class ElementStress {

@@ -9,12 +9,11 @@
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/integrator/detail/implicit_step.hpp>
 #include <palpate/integrator/detail/kinetic_limit.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/integrator/time_scheme.hpp>

@@ -6,8 +6,8 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/integrator/detail/implicit_step.hpp>
 #include <palpate/integrator/quasi_newton.hpp>
+#include <palpate/integrator/time_scheme.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
 #include <palpate/model/moving/detail/step_factor.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/model/moving/detail/quasi_newton_motion.hpp>
 #include <palpate/assembly/load_vector.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 

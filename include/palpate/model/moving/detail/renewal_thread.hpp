@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-#include <palpate/core/realtime.hpp>
+#include <palpate/core/platform.hpp>
 
 #include <atomic>
 #include <functional>

@@ -1,7 +1,7 @@
 // Sets up and measures the compositions among which `suggest` chooses.
 #pragma once
 
-#include <palpate/assembly/detail/region_materials.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/mesh.hpp>

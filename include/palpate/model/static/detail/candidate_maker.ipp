@@ -4,10 +4,10 @@
 #include <palpate/model/static/detail/candidate_maker.hpp>
 
 #include <palpate/core/platform.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet10.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/mesh/refine_near_touched.hpp>
+#include <palpate/mesh/refine_near.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 

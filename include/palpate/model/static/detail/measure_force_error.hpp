@@ -2,7 +2,6 @@
 #pragma once
 
 #include <palpate/contact/force_accuracy.hpp>
-#include <palpate/model/accuracy_report.hpp>
 #include <palpate/model/setup_report.hpp>
 #include <palpate/model/static/detail/force_error_source.hpp>
 #include <palpate/model/static/detail/pressed_points.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <palpate/assembly/detail/any_stiffness.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
 #include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/model/setup_report.hpp>
-#include <palpate/model/static/detail/any_static_system.hpp>
 
 #include <optional>
 #include <string>

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/element/smoothed.hpp>
 #include <palpate/element/tet4.hpp>
+#include <palpate/element/wrappers.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/model/detail/element_body.hpp>
-#include <palpate/model/static/detail/make_stiffness.hpp>
 #include <palpate/model/static/detail/solver_recipe.hpp>
 #include <palpate/model/static/linear_tissue.hpp>
 

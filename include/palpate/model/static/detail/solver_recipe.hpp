@@ -1,15 +1,15 @@
-// The recipe of a solver policy.
+// The recipe of a solver policy, and of the stiffness of its model.
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/any_stiffness.hpp>
 #include <palpate/assembly/detail/essential_conditions.hpp>
-#include <palpate/condensation/condensed_system.hpp>
-#include <palpate/condensation/uncondensed.hpp>
+#include <palpate/condensation/static_systems.hpp>
 #include <palpate/core/detail/binary_io.hpp>
 #include <palpate/core/setup_options.hpp>
+#include <palpate/linear/detail/any_solver.hpp>
+#include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/policies.hpp>
-#include <palpate/model/static/detail/any_static_system.hpp>
 #include <palpate/model/static/detail/prepared_system.hpp>
 
 #include <string_view>
@@ -65,6 +65,12 @@ template <class Policy>
 inline constexpr bool is_iterative = std::same_as<Policy, ConjugateGradient>;
 template <class Assembly>
 inline constexpr bool is_iterative<WithAssembly<ConjugateGradient, Assembly>> = true;
+
+/// The stiffness of a body whose element type is known here only.
+template <Element E, class Assembly>
+AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) {
+  return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
+}
 
 }  // namespace detail
 

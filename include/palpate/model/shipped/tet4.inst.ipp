@@ -1,8 +1,0 @@
-// Compiled once: set-up with Tet4.
-#include <palpate/model/shipped/shipped.hpp>
-
-namespace palpate { inline namespace PALPATE_ABI {
-
-PALPATE_SHIPPED_TET4()
-
-}}  // namespace palpate
