@@ -195,7 +195,8 @@ TEST_CASE("points deep inside the core of a convex tool get finite forces outwar
   CHECK(s.force() == Vector3::Zero());
 }
 
-TEST_CASE("a flat tool on a support has the points it needs: finer ones in its plane are no doubt", "[contact][convex]") {
+TEST_CASE("a flat tool on a support has the points it needs: finer ones in its plane are no doubt",
+          "[contact][convex]") {
   const double radius = 1e-3;
   AnalyticTissue support(40, 0.04, 1e-12);  // hardly yields
   const ConvexTool plate = ConvexTool::box({0.007, 0.007, 0.004}, radius);

@@ -12,8 +12,8 @@ namespace cross {
 /// first the one that the scene fails, and any number of "# where: <name> <relation> <value>". A failure of one of
 /// these oracles whose scene meets all conditions has that cause. Names are those of a scene's values, of any tool's
 /// values, and "facets", the length of an edge in radii of the smallest tool, "tools", their number, "moves" and
-/// "is_cut", 0 or 1, "torques", 1 where torques differ more than forces, and "part", the size of the value found relative
-/// to that expected. Relations: =, !=, <, >.
+/// "is_cut", 0 or 1, "torques", 1 where torques differ more than forces, and "part", the size of the value found
+/// relative to that expected. Relations: =, !=, <, >.
 struct Known {
   struct Condition {
     std::string name, relation, value;

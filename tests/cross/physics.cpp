@@ -174,8 +174,8 @@ std::vector<Finding> check_settled(const Scene& s, const Run& r) {
   return {};
 }
 
-/// No vertex of the surface is inside a sphere, if facets are no longer than its radius. Displayed vertices lack the dent
-/// within a facet: up to 7 % of the radius was measured.
+/// No vertex of the surface is inside a sphere, if facets are no longer than its radius. Displayed vertices lack the
+/// dent within a facet: up to 9 % of the radius was measured.
 std::vector<Finding> check_penetration(const Scene& s, const Run& r) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const ToolValue& t : s.tools) smallest = std::min(smallest, t.radius);

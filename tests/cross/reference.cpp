@@ -112,8 +112,8 @@ Finding count_false_alarms(const Scene& s, const Run& r, const Run& fine) {
   return f;
 }
 
-/// A force is within its own bound or a tenth of the reference, or flagged; a fifth where a support is pressed, since it
-/// yields nowhere and both tools sink in between its points.
+/// A force is within its own bound or a tenth of the reference, or flagged; a fifth where a support is pressed, since
+/// it yields nowhere and both tools sink in between its points.
 std::vector<Finding> check_reference(const Scene& s, const Run& r) {
   const Run fine = cross::run(s, {.member = "alone", .pose = "identity", .capacity = 1000, .reference = true});
   if (!r.refused.empty() || !fine.refused.empty()) return {};
