@@ -39,7 +39,7 @@ check address-contact "$undefined" "" contact/friction_test.cpp contact/capsule_
   contact/contact_problem_test.cpp
 check address-devices "$undefined" "" device/chai3d_test.cpp device/force_dimension_test.cpp device/openhaptics_test.cpp
 check address-faults "$undefined" "" haptic/faults_test.cpp
-check address-cut "$undefined" "" cut/cut_system_test.cpp cut/cuttable_tissue_test.cpp cut/leaving_elements_test.cpp
+check address-cut "$undefined" "" cut/cut_system_test.cpp cut/cuttable_tissue_test.cpp
 for part in static moving cut; do
   check address-compositions-$part "$undefined" "" extremes/compositions_${part}_test.cpp
   check threads-compositions-$part "-fsanitize=thread" "" extremes/compositions_${part}_test.cpp

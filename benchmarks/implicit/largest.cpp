@@ -1,7 +1,6 @@
 // The largest block that moves in real time at 1 kHz, by material and integrator, and the error of its motion.
 #include "implicit.hpp"
 
-#include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/integrator/explicit_motion.hpp>

@@ -1,5 +1,4 @@
 // Neo-Hookean tissue in explicit steps; the spheres act by penalty forces, as there is no servo for explicit motion.
-#include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/detail/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
@@ -134,12 +133,9 @@ void add(const Bench& bench, std::vector<Entry>& entries, const std::string& mes
 void add_explicit(const Bench& bench, std::vector<Entry>& entries) {
   add<BatchedTetrahedra<NeoHookean>, CentralDifference>(bench, entries, "given", "Tet4",
                                                         "BatchedTetrahedra<NeoHookean>", "CentralDifference", "double");
-  for (const std::string& mesh : meshes_for_node_contact(bench)) {
+  for (const std::string& mesh : meshes_for_node_contact(bench))
     add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
         bench, entries, mesh, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
-    add<AveragedTetrahedra<NeoHookean, float>, CentralDifference>(
-        bench, entries, mesh, "averaged Tet4", "AveragedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
-  }
 }
 
 }  // namespace tradeoff

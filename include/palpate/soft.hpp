@@ -2,7 +2,6 @@
 // that moves while it is touched.
 #pragma once
 
-#include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/haptic/background_worker.hpp>
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/fibre_reinforced.hpp>

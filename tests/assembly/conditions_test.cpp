@@ -6,6 +6,7 @@
 #include "assembly/bodies.hpp"
 #include "assembly/csv.hpp"
 #include "local/closed_form.hpp"
+#include "mesh/two_cubes.hpp"
 
 using namespace test;
 

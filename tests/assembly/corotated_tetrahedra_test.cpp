@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "assembly/bodies.hpp"
+#include "material/semidefinite_tangent.hpp"
 
 using namespace test;
 
@@ -52,7 +53,7 @@ VectorX plain_product(const HyperelasticBody<Tet4, Law>& body, const VectorX& u,
     }
     const Matrix3 f = Matrix3::Identity() + ue * g.gradient, df = xe * g.gradient;
     const Eigen::Matrix<double, 9, 1> dp =
-        body.materials[body.rest.region_of(e)].semidefinite_tangent(tensor3<double>(f)) * vector9(tensor3<double>(df));
+        semidefinite_tangent(body.materials[body.rest.region_of(e)], tensor3<double>(f)) * vector9(tensor3<double>(df));
     const Eigen::Matrix<double, 3, 4> fe = g.volume * Eigen::Map<const Matrix3>(dp.data()) * g.gradient.transpose();
     for (int a = 0; a < 4; ++a) y.segment<3>(3 * Index{mesh.element_node(e, a)}) += fe.col(a);
   }

@@ -6,6 +6,7 @@
 #include <palpate/post/stress.hpp>
 
 #include "assembly/bodies.hpp"
+#include "mesh/two_cubes.hpp"
 
 using namespace test;
 

@@ -1,5 +1,4 @@
 // Fibre directions of the mesh at large strain: every element has its own.
-#include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/detail/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/element/hex8.hpp>
@@ -103,7 +102,6 @@ TEST_CASE("unsupported and invalid fibres are refused", "[assembly][large_strain
   Mesh<Tet4> mesh = block_of_fibres<Tet4>(false);
   const auto body = make_hyperelastic_body(mesh, std::vector<FibredGel>{fibred_gel});
   CHECK_REFUSED(SetupErrorKind::unsupported, BatchedTetrahedra<FibredGel>{body});
-  CHECK_REFUSED(SetupErrorKind::unsupported, AveragedTetrahedra<FibredGel>{body});
   // a material without a direction ignores fibres
   CHECK(BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base})).size() ==
         3 * mesh.node_count());

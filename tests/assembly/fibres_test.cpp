@@ -11,6 +11,7 @@
 #include <palpate/testing/assembler_laws.hpp>
 
 #include "assembly/bodies.hpp"
+#include "mesh/two_cubes.hpp"
 
 using namespace test;
 

@@ -8,6 +8,7 @@
 
 #include "assembly/bodies.hpp"
 #include "assembly/csv.hpp"
+#include "mesh/two_cubes.hpp"
 
 using namespace test;
 using Catch::Matchers::WithinRel;

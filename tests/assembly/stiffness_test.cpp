@@ -7,6 +7,7 @@
 #include "assembly/csv.hpp"
 #include "element/user_elements.hpp"
 #include "local/closed_form.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,6 +8,7 @@
 
 #include "assembly/csv.hpp"
 #include "linear/systems.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <numeric>
 

@@ -103,12 +103,12 @@ double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::sp
                     const Vector3& proxy, double radius) {
   const std::vector<Vector3> x = deformed_surface(tissue, forces);
   double smallest = infinity;
-  for (int t = 0; t < static_cast<int>(tissue.contact_surface().triangles().size()); ++t)
-    for (const ContactSample& s : samples.of_triangle(t)) {
-      Vector3 q = Vector3::Zero();
-      for (std::size_t a = 0; a < 3; ++a) q += s.weights[a] * x[static_cast<std::size_t>(s.vertices[a])];
-      smallest = std::min(smallest, (proxy - q).norm() - radius);
-    }
+  for (int i = 0; i < samples.count(); ++i) {
+    const ContactSample& s = samples[i];
+    Vector3 q = Vector3::Zero();
+    for (std::size_t a = 0; a < 3; ++a) q += s.weights[a] * x[static_cast<std::size_t>(s.vertices[a])];
+    smallest = std::min(smallest, (proxy - q).norm() - radius);
+  }
   return smallest;
 }
 

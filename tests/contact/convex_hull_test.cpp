@@ -50,6 +50,22 @@ double support(std::span<const Vector3> points, const Vector3& direction) {
   return most;
 }
 
+/// A lower bound of the signed distance, by the planes of the faces and, of a plane polygon, of its sides.
+double least_distance(const ConvexHull& hull, const Vector3& p) {
+  double highest = -infinity;
+  for (const Triangle& t : hull.triangles()) {
+    const auto corner = [&](std::size_t i) { return hull.vertices()[static_cast<std::size_t>(t[i % 3])]; };
+    const Vector3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    highest = std::max(highest, normal.dot(p - corner(0)));
+    for (std::size_t i = 0; i < 3 && hull.dimension() == 2; ++i) {
+      const Vector3 outward = (corner(i + 1) - corner(i)).cross(normal).normalized();
+      if (support(hull.vertices(), outward) <= outward.dot(corner(i)) + 1e-12)
+        highest = std::max(highest, outward.dot(p - corner(i)));
+    }
+  }
+  return highest;
+}
+
 /// By how far a result is not the closest point of the hull of `points`. The direction proves a lower bound of the
 /// signed distance, a point of the hull an upper bound; inside, the planes through three points do.
 double closest_error(const ConvexHull& hull, std::span<const Vector3> points, const Vector3& p) {
@@ -57,7 +73,7 @@ double closest_error(const ConvexHull& hull, std::span<const Vector3> points, co
   double error = std::abs(on.outward.norm() - 1.0);
   error = std::max(error, std::abs(on.outward.dot(p) - support(points, on.outward) - on.distance));
   error = std::max(error, (p - on.distance * on.outward - on.point).norm());
-  if (hull.dimension() >= 2) error = std::max(error, hull.least_distance(on.point));
+  if (hull.dimension() >= 2) error = std::max(error, least_distance(hull, on.point));
   return error;
 }
 

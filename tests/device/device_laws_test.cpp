@@ -6,6 +6,7 @@
 #include <palpate/testing/device_laws.hpp>
 
 #include "catch.hpp"
+#include "device/press_drag_release.hpp"
 
 using namespace palpate;
 using palpate::testing::device_laws;
@@ -196,7 +197,7 @@ TEST_CASE("correct devices satisfy the laws", "[device][laws]") {
   CHECK(broken(Good{}) == "");
   CHECK(broken(WithTorque{}) == "");
   CHECK(broken(MockDevice(trajectory::poke())) == "");
-  CHECK(broken(MockDevice(trajectory::press_drag_release())) == "");
+  CHECK(broken(MockDevice(test::press_drag_release())) == "");
   CHECK(broken(MockDevice([](double t) { return Vector3(std::sin(t), 0.0, 0.0); })) == "");
   MockOptions options;
   options.clock = DeviceClock::wall;

@@ -53,7 +53,6 @@ TEST_CASE("invalid trajectories and devices are refused", "[device][trajectory]"
   CHECK_THROWS_AS(Trajectory({{nan_value, x}}), SetupError);
   CHECK_THROWS_AS(Trajectory({{0.0, Vector3(0, nan_value, 0)}}), SetupError);
   CHECK_THROWS_AS(trajectory::poke({.approach = 0.0}), SetupError);
-  CHECK_THROWS_AS(trajectory::press_drag_release({.drag = -1.0}), SetupError);
   MockOptions options;
   for (double bad : {0.0, -1.0, nan_value, infinity}) {
     options.rate = bad;
@@ -75,15 +74,6 @@ TEST_CASE("poke moves in, waits, moves back, the given number of times", "[devic
     for (double t : {6.0, 8.0, 10.0}) CHECK((path(start + t) - from).norm() < 1e-15);
   }
   CHECK(trajectory::poke({.times = 0}).duration() == 0.0);
-}
-
-TEST_CASE("press, drag, release", "[device][trajectory]") {
-  const trajectory::PressDragRelease p;
-  const Trajectory path = trajectory::press_drag_release(p);
-  CHECK(path(0.0) == p.above);
-  CHECK((path(1.0) - p.pressed).norm() < 1e-15);
-  CHECK((path(3.0) - p.dragged).norm() < 1e-15);
-  CHECK((path(4.0) - Vector3(0.01, 0, 0.02)).norm() < 1e-15);
 }
 
 TEST_CASE("simulated time: one period per read, the same in every run", "[device][mock]") {

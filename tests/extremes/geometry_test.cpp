@@ -3,6 +3,7 @@
 #include <palpate/testing/tissue_laws.hpp>
 
 #include "extremes/verdict.hpp"
+#include "mesh/two_cubes.hpp"
 
 using namespace test;
 

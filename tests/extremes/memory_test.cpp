@@ -1,6 +1,7 @@
 // E10: each allocation of a set-up fails in turn. Nothing leaks, existing objects stay unchanged, and the set-up can be
 // repeated.
 #include "extremes/verdict.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <palpate/testing/allocation_counter.hpp>
 

@@ -2,7 +2,6 @@
 #include <palpate/device/mock_device.hpp>
 #include <palpate/testing/device_laws.hpp>
 #include <palpate/device/recorder.hpp>
-#include <palpate/device/trajectory.hpp>
 #include <palpate/haptic/force_gate.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/haptic/haptic_loop.hpp>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "contact/analytic_tissue.hpp"
+#include "device/press_drag_release.hpp"
 #include "refused.hpp"
 
 #include "catch.hpp"
@@ -453,7 +453,7 @@ TEST_CASE("read, tick, gate, write allocate nothing", "[haptic][allocation]") {
   }
   MockOptions options;
   options.faults = {{.first = 100, .count = 10}, {.kind = DeviceFault::Kind::nan_position, .first = 200}};
-  MockDevice stylus(trajectory::press_drag_release(), options);
+  MockDevice stylus(test::press_drag_release(), options);
   Recorder recorder(stylus, 1000);
   SpringServo servo;
   recorder.start();

@@ -1,5 +1,6 @@
 // A haptic session on a finite element model: the forces to expect.
 #include "contact/servo_session.hpp"
+#include "device/press_drag_release.hpp"
 
 #include <palpate/device/mock_device.hpp>
 #include <palpate/device/recorder.hpp>
@@ -298,11 +299,11 @@ TEST_CASE("a replayed recording gives bitwise the recorded forces", "[haptic][se
                  {.kind = Kind::nan_position, .first = 900, .count = 30},
                  {.kind = Kind::teleport, .first = 1300, .count = 3, .offset = Vector3(0.2, 0, 0)},
                  {.kind = Kind::stall, .first = 1600, .seconds = 0.05}};
-  trajectory::PressDragRelease path;
+  test::PressDragRelease path;
   path.above = Vector3(0.011, 0.0137, pad_height + sphere_radius + 5e-3);
   path.pressed = Vector3(0.011, 0.0137, pad_height + sphere_radius - 2e-3);
   path.dragged = Vector3(0.021, 0.0159, pad_height + sphere_radius - 2e-3);
-  MockDevice stylus(trajectory::press_drag_release(path), mock);
+  MockDevice stylus(test::press_drag_release(path), mock);
   Recorder recorder(stylus, 5000);
   LoopOptions loop;
   loop.paced = false;

@@ -240,7 +240,6 @@ TEST_CASE("two models of a group are touched simultaneously, each in its pose", 
   pose.pretranslate(Vector3(0.0405, 0.02, 0.0));                       // 0.5 mm from the left one
   right.set_pose(pose);
   TissueGroup group(left, right);
-  CHECK(group.member_count() == 2);
   std::vector<int> some{0, 5, 20, 49, 60, 97};
   CHECK(testing::describe(testing::tissue_laws(group, some)) == "");
 

@@ -1,5 +1,4 @@
 // Status flags and reports of explicit motion and its forces, and refused arguments.
-#include <palpate/assembly/averaged_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/st_venant_kirchhoff.hpp>
 
@@ -31,8 +30,7 @@ VectorX pushed_through(const Mesh<Tet4>& mesh) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("the smallest volume ratio ignores lanes without an element", "[integrator][report]",
-                   (BatchedTetrahedra<NeoHookean>), (BatchedTetrahedra<NeoHookean, float>),
-                   (AveragedTetrahedra<NeoHookean>), (AveragedTetrahedra<NeoHookean, float>)) {
+                   (BatchedTetrahedra<NeoHookean>), (BatchedTetrahedra<NeoHookean, float>)) {
   for (const int n : {1, 2, 3}) {  // 6, 48 and 162 elements: batches with and without empty lanes
     const auto body = soft_block(n);
     const DeformationReport grown = report_of<TestType>(body, stretched(body.rest.mesh, {1.2, 1.0, 1.0}));
@@ -49,28 +47,6 @@ TEMPLATE_TEST_CASE("the smallest volume ratio ignores lanes without an element",
     CHECK(std::abs(wrong.smallest_volume_ratio - exact.smallest_volume_ratio) <= 1e-5);
     CHECK(wrong.admissible);
   }
-}
-
-TEST_CASE("averages stop where the region changes", "[integrator][averaged]") {
-  const Vector3 size(0.1, 0.1, 0.1);
-  Mesh<Tet4> mesh = box_tet4(size, {3, 3, 4}, BoxSplit::six);
-  mesh.region_names = {"gel", "bone"};
-  for (Index e = 0; e < mesh.element_count(); ++e)
-    mesh.regions.push_back(element_nodes<Tet4>(mesh, e).col(2).mean() > 0.05 ? 1 : 0);
-  const NeoHookean gel{3e3, 0.49, 1e3}, bone{3e6, 0.3, 2e3};
-  const auto body = make_hyperelastic_body(mesh, std::vector<NeoHookean>{gel, bone});
-  // Uniform compression of the gel; the bone only translates: each region has one J, and the result equals plain
-  // elements.
-  const VectorX u = velocity_field(mesh, [](const Vector3& p) -> Vector3 {
-    return {0.0, 0.0, -0.1 * std::min(p.z(), 0.05)};
-  });
-  AveragedTetrahedra<NeoHookean> averaged(body);
-  const LargeStrain<Tet4, NeoHookean> plain(body);
-  VectorX f(u.size()), exact(u.size());
-  averaged.force(u, f);
-  plain.force(u, exact);
-  CHECK((f - exact).cwiseAbs().maxCoeff() <= 1e-11 * exact.cwiseAbs().maxCoeff());
-  CHECK(std::abs(averaged.energy(u) / plain.energy(u) - 1.0) <= 1e-12);
 }
 
 TEST_CASE("a step reports inverted elements and inadmissible materials", "[integrator][report]") {
@@ -92,8 +68,8 @@ TEST_CASE("a step reports inverted elements and inadmissible materials", "[integ
 
   const StVenantKirchhoff strict{3e3, 0.4, 1e3};
   const auto strict_body = make_hyperelastic_body(mesh, std::vector<StVenantKirchhoff>{strict});
-  ExplicitMotion<AveragedTetrahedra<StVenantKirchhoff>, CentralDifference> other(
-      AveragedTetrahedra<StVenantKirchhoff>(strict_body), lumped_mass(strict_body.rest), above_ground(mesh));
+  ExplicitMotion<BatchedTetrahedra<StVenantKirchhoff>, CentralDifference> other(
+      BatchedTetrahedra<StVenantKirchhoff>(strict_body), lumped_mass(strict_body.rest), above_ground(mesh));
   other.set(u, still);
   other.estimate_limit(40);
   const Status worse = other.step(1e-3 * other.limit());

@@ -145,22 +145,6 @@ TEST_CASE("solves for a few loaded and wanted dofs equal full solves", "[linear]
       solver.solve_path_into(loaded, loads, wanted, answer);
       for (std::size_t i = 0; i < wanted.size(); ++i) CHECK(answer[i] == x[wanted[i]]);
     }
-    DofLayout layout = c.layout;
-    layout.kept = some_dofs(n);
-    MatrixX schur;
-    SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
-    const std::vector<Index> loaded{n / 2}, wanted{1, n - 2, n / 3};
-    const std::vector<double> loads{2.0};
-    std::vector<double> answer(3);
-    VectorX b = VectorX::Zero(n), x(n), load(interior.kept()), again(interior.kept());
-    b[n / 2] = 2.0;
-    interior.eliminate_into(b, load);
-    const VectorX kept_answer = schur.llt().solve(load);
-    interior.recover_into(kept_answer, x);
-    interior.eliminate_path_into(loaded, loads, again);
-    interior.recover_path_into(kept_answer, wanted, answer);
-    CHECK(again == load);
-    for (std::size_t i = 0; i < wanted.size(); ++i) CHECK(answer[i] == x[wanted[i]]);
   }
 }
 
@@ -238,8 +222,6 @@ TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
   solver.solve_path_into(loaded, loads, wanted, answer);
   interior.eliminate_into(b, load);
   interior.recover_into(load, x);
-  interior.eliminate_path_into(loaded, loads, load);
-  interior.recover_path_into(load, wanted, answer);
   const std::uint64_t allocations = scope.allocations();
   CHECK(allocations == 0);
 }

@@ -1,4 +1,5 @@
 #include "mesh_helpers.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <palpate/mesh/generators.hpp>
 

@@ -1,5 +1,6 @@
 // Quadratic meshes from linear ones, and uniform refinement.
 #include "mesh_helpers.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <palpate/mesh/promote.hpp>
 #include <palpate/mesh/generators_box.hpp>

@@ -1,6 +1,7 @@
 // Models from the arrays of a simulator instead of a Mesh.
 #include <palpate/mesh/mesh_arrays.hpp>
 
+#include "mesh/two_cubes.hpp"
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 

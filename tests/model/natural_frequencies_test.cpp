@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "assembly/bodies.hpp"
+#include "mesh/two_cubes.hpp"
 
 #include <numeric>
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "mesh/two_cubes.hpp"
 #include "model/any_model.hpp"
 #include "model/reference.hpp"
 #include "refused.hpp"

@@ -107,7 +107,7 @@ class LargeStrain final : public ElasticForces {
  public:
   static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
                 "palpate: Smoothed and MeanDilatation average small strains; choose Tet10 or Hex20, or "
-                "AveragedTetrahedra for explicit motion");
+                "Implicit<QuasiNewton<>> for Smoothed<Tet4>");
   static constexpr bool has_history = ViscousMaterial<M>;
 
   /// Throws inverted_element or non_finite for a mesh that is invalid at rest, too_large.

@@ -78,23 +78,18 @@ MassMatrix assemble_mass(const Body<E>& body, const SetupLimits& limits = {}) {
 }
 
 /// Lumped mass [kg], one entry per node, by diagonal scaling (local/mass.hpp): positive wherever the density is, and
-/// the total is exact. Used as divisor in explicit integration. Elements for which gone(element) is true have no mass.
-/// Throws inverted_element or non_finite.
-template <Element E, class Gone>
-VectorX lumped_mass(const Body<E>& body, Gone&& gone) {
+/// the total is exact. Used as divisor in explicit integration. Throws inverted_element or
+/// non_finite.
+template <Element E>
+VectorX lumped_mass(const Body<E>& body) {
   VectorX mass = VectorX::Zero(body.mesh.node_count());
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
-    if (gone(e)) continue;
     const auto volumes = lumped_element_mass<E>(element_nodes<E>(body.mesh, e));
     const double density = body.density[body.region_of(e)];
     detail::require_mass(volumes.sum(), density * volumes.sum(), e);
     for (int a = 0; a < E::nodes; ++a) mass[body.mesh.element_node(e, a)] += density * volumes[a];
   }
   return mass;
-}
-template <Element E>
-VectorX lumped_mass(const Body<E>& body) {
-  return lumped_mass(body, [](Index) { return false; });
 }
 
 /// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows

@@ -68,7 +68,7 @@ class SmoothedTetrahedra {
     }
     follow_in(edges_, edges, 6, edges_of_, mesh, gone);
     follow_in(nodes_, nodes, 4, nodes_of_, mesh, gone);
-    layout_.remove_if(gone, [](std::size_t, int) {});
+    layout_.remove_if(gone);
     layout_.reconnect(mesh, [&](Index batch) { return changed[static_cast<std::size_t>(batch)] != 0; });
     for (std::size_t e = 0; e < place_.size(); ++e)
       if (gone(static_cast<Index>(e))) place_[e] = -1;

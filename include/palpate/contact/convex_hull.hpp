@@ -44,9 +44,6 @@ class ConvexHull {
   /// of a visible face; inside it is in the nearest face. The signed distance is convex. Exact; work bounded by the
   /// number of faces and edges (12 and 6 for a box).
   Closest closest(const Vector3& p) const noexcept;
-  /// A lower bound of the signed distance, by the planes of the faces and, of a plane polygon, of its sides [m]; exact
-  /// inside. -infinity without faces.
-  double least_distance(const Vector3& p) const noexcept;
 
  private:
   struct Face {

@@ -279,14 +279,6 @@ inline bool ConvexHull::covers(const Face& face, const Vector3& p) const noexcep
   return true;
 }
 
-PALPATE_INLINE double ConvexHull::least_distance(const Vector3& p) const noexcept {
-  double highest = -infinity;
-  for (const Face& face : faces_) highest = std::max(highest, face.height(p));
-  for (int i = 0; dimension_ == 2 && i < faces_[0].end; ++i)
-    highest = std::max(highest, sides_[static_cast<std::size_t>(i)].height(p));
-  return highest;
-}
-
 PALPATE_INLINE ConvexHull::Closest ConvexHull::closest(const Vector3& p) const noexcept {
   std::array<double, maximum_faces> heights;
   heights[0] = -infinity;

@@ -44,7 +44,6 @@ class TissueGroup : public StillTissue {
   /// Applies loads and poses that the members received since the last update. No allocation; not while a tick runs.
   void update() noexcept;
 
-  int member_count() const noexcept { return static_cast<int>(members_.size()); }
   /// Those of the group's forces that act on one member, in its own numbers and frame, as `displacement_with` takes
   /// them. Writes as many as fit and returns their number. No allocation.
   std::size_t forces_on(int member, std::span<const VertexForce> forces, std::span<VertexForce> own) const noexcept;

@@ -140,10 +140,6 @@ class ReplayDevice {
   void start() noexcept { rendered_.start(); }
   void stop() noexcept { rendered_.stop(); }
 
-  void rewind() noexcept {
-    next_ = 0;
-    last_time_ = 0.0;
-  }
   /// Whether the state read last was the first one after a start of the recorded device, and not the first of the
   /// recording: a HapticSession then resets its servo, as its start did.
   bool restarts() const noexcept { return restarts_; }

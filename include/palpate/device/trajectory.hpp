@@ -48,15 +48,6 @@ struct Poke {
 /// Moves from `from` to `to`, waits, moves back, pauses; `times` times.
 Trajectory poke(const Poke& p = {});
 
-struct PressDragRelease {
-  Vector3 above = Vector3(-0.01, 0.0, 0.02);     ///< start
-  Vector3 pressed = Vector3(-0.01, 0.0, -0.01);  ///< end of pressing
-  Vector3 dragged = Vector3(0.01, 0.0, -0.01);   ///< end of dragging; released by the distance it was pressed
-  double press = 1.0, drag = 2.0, release = 1.0;
-};
-/// Presses, drags along a line, releases.
-Trajectory press_drag_release(const PressDragRelease& p = {});
-
 }  // namespace trajectory
 
 }}  // namespace palpate

@@ -58,11 +58,4 @@ PALPATE_INLINE Trajectory poke(const Poke& p) {
   return Trajectory(std::move(path));
 }
 
-PALPATE_INLINE Trajectory press_drag_release(const PressDragRelease& p) {
-  return Trajectory({{0.0, p.above},
-                     {p.press, p.pressed},
-                     {p.press + p.drag, p.dragged},
-                     {p.press + p.drag + p.release, p.dragged + (p.above - p.pressed)}});
-}
-
 }}}  // namespace palpate::trajectory

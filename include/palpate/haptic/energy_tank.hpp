@@ -5,7 +5,6 @@
 #include <palpate/core/types.hpp>
 
 #include <array>
-#include <optional>
 #include <string>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -94,7 +93,6 @@ class EnergyTank {
 
   double level() const noexcept { return level_; }  ///< [J]
   double gain() const noexcept;
-  const PassivityObserver& observer() const noexcept { return observer_; }
   const EnergyLimits& limits() const noexcept { return limits_; }
 
  private:
@@ -105,11 +103,6 @@ class EnergyTank {
   EnergyLimits limits_;
   PassivityObserver observer_;
   double level_;
-};
-
-/// For a servo without an energy tank, at no cost.
-struct NoEnergyTank {
-  operator std::optional<EnergyTank>() const noexcept { return {}; }  // NOLINT(google-explicit-constructor)
 };
 
 }}  // namespace palpate

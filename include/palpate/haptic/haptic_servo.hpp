@@ -14,6 +14,7 @@
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 

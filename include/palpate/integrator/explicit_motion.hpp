@@ -30,8 +30,7 @@ class StepLimit {
   /// estimate has settled the larger of the two is used; after that the estimate alone, because a deformed body may be
   /// stiffer than the bound.
   StepLimit(Index dofs, double bound, double margin = 0.07);
-  /// Restarts from a random vector, for a body that has changed. A bound from the elements is valid for any part of
-  /// them.
+  /// Restarts from a random vector.
   void restart() noexcept;
 
   /// Iterates; `state.force` must belong to `state.displacement`. One force per iteration; no allocation. A non-finite
@@ -220,28 +219,6 @@ class ExplicitMotion {
   void restart() noexcept {
     begin();
     if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
-  }
-
-  /// Permanently removes the elements for which gone(element) is true, with their mass; `nodal_mass` is the remaining
-  /// mass (lumped_mass(body, gone)). Remaining nodes keep their velocity, and nodes without mass stop at their
-  /// position. load() is not adapted: with gravity, the caller reduces it. The limit is estimated again as by restart()
-  /// and may be shorter (a light node on a stiff element), at rest not shorter than the bound of the elements. Work is
-  /// counted from here; a stopped motion stays stopped. Throws bad_argument or bad_density, without a change.
-  template <class Gone>
-  requires requires(Force& f, Gone gone) { f.remove_if(gone); }
-  void remove_elements(Gone&& gone, const VectorX& nodal_mass) {
-    require_mass_left(state_.mass, nodal_mass);
-    force_.remove_if(gone);
-    state_.mass = mass_of_dofs(nodal_mass);
-    std::erase_if(state_.free, [&](Index dof) { return !(state_.mass[dof] > 0.0); });
-    for (Index dof = 0; dof < state_.mass.size(); ++dof)
-      if (!(state_.mass[dof] > 0.0)) state_.velocity[dof] = state_.inverse_mass[dof] = 0.0;
-    for (const Index dof : state_.free) state_.inverse_mass[dof] = 1.0 / state_.mass[dof];
-    total_mass_ = nodal_mass.sum();
-    const bool stopped = stopped_;
-    limit_.restart();
-    restart();
-    stopped_ = stopped;
   }
 
   /// Largest step that is accepted [s], estimated at most limit_every steps ago.

@@ -82,10 +82,6 @@ class SparseCholesky {
   /// the loaded and the wanted dofs; equals `solve_into` to the last bit. No allocation.
   void solve_path_into(std::span<const Index> loaded, std::span<const double> loads, std::span<const Index> wanted,
                        std::span<double> answer) noexcept;
-  /// `eliminate_into` for a load on a few dofs.
-  void eliminate_path_into(std::span<const Index> loaded, std::span<const double> loads, VectorX& kept_load) noexcept;
-  /// `recover_into` for a few dofs, after `eliminate_path_into`.
-  void recover_path_into(const VectorX& kept_answer, std::span<const Index> wanted, std::span<double> answer) noexcept;
 
  private:
   struct Factor;
@@ -94,8 +90,6 @@ class SparseCholesky {
   static std::shared_ptr<Factor> allocate(const CholeskyAnalysis& analysis, bool interior);
   static MatrixX complement(const CholeskyAnalysis& analysis, detail::ParallelFronts& fronts);
   void adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis);
-  void take_kept(VectorX& kept_load) noexcept;
-  void give_kept(const VectorX& kept_answer) noexcept;
   void hold_kept() noexcept;
 
   std::shared_ptr<const Factor> factor_;

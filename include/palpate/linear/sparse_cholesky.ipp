@@ -157,11 +157,13 @@ PALPATE_INLINE void SparseCholesky::eliminate_into(const VectorX& b, VectorX& ke
                                                    const SetupThreads& threads) noexcept {
   sweeps_.scatter(b.data());
   sweeps_.forward_all(threads);
-  take_kept(kept_load);
+  const double* const values = sweeps_.values().data();
+  for (Index i = 0; i < kept(); ++i) kept_load.data()[i] = values[factor_->kept_place(i)];
 }
 PALPATE_INLINE void SparseCholesky::recover_into(const VectorX& kept_answer, VectorX& x,
                                                  const SetupThreads& threads) noexcept {
-  give_kept(kept_answer);
+  double* const values = sweeps_.values().data();
+  for (Index i = 0; i < kept(); ++i) values[factor_->kept_place(i)] = kept_answer.data()[i];
   sweeps_.backward_all(threads);
   sweeps_.gather(x.data());
 }
@@ -180,25 +182,6 @@ PALPATE_INLINE void SparseCholesky::solve_path_into(std::span<const Index> loade
   sweeps_.forward_path(loaded, loads);
   hold_kept();
   sweeps_.backward_path(wanted, answer);
-}
-PALPATE_INLINE void SparseCholesky::eliminate_path_into(std::span<const Index> loaded, std::span<const double> loads,
-                                                        VectorX& kept_load) noexcept {
-  sweeps_.forward_path(loaded, loads);
-  take_kept(kept_load);
-}
-PALPATE_INLINE void SparseCholesky::recover_path_into(const VectorX& kept_answer, std::span<const Index> wanted,
-                                                      std::span<double> answer) noexcept {
-  give_kept(kept_answer);
-  sweeps_.backward_path(wanted, answer);
-}
-
-PALPATE_INLINE void SparseCholesky::take_kept(VectorX& kept_load) noexcept {
-  const double* const values = sweeps_.values().data();
-  for (Index i = 0; i < kept(); ++i) kept_load.data()[i] = values[factor_->kept_place(i)];
-}
-PALPATE_INLINE void SparseCholesky::give_kept(const VectorX& kept_answer) noexcept {
-  double* const values = sweeps_.values().data();
-  for (Index i = 0; i < kept(); ++i) values[factor_->kept_place(i)] = kept_answer.data()[i];
 }
 PALPATE_INLINE void SparseCholesky::hold_kept() noexcept {
   std::fill_n(sweeps_.values().data() + size() - kept(), kept(), 0.0);

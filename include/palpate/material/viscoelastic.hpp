@@ -155,9 +155,7 @@ struct Viscoelastic {
     for (const PronyTerm& t : terms) left -= t.share;
     return left;
   }
-  /// d stress / d stress of the base over a step [-]: factor for the tangent of the base (for its deviatoric part only,
-  /// with deviatoric relaxation).
-  double tangent_share(double dt) const noexcept { return over(dt).share; }
+  /// Its share is the factor for the tangent of the base (for its deviatoric part only, with deviatoric relaxation).
   PronyStep<Terms> over(double dt) const noexcept {
     PronyStep<Terms> step;
     step.share = long_term_share();

@@ -1,4 +1,4 @@
-// Boxes, spheres and cylinders of tetrahedra, and the two cubes of the thesis.
+// Boxes, spheres and cylinders of tetrahedra.
 #pragma once
 
 #include <palpate/concepts/element.hpp>
@@ -94,11 +94,6 @@ Mesh<Tet4> box_tet4(const std::vector<double>& x, const std::vector<double>& y, 
 /// Box of `size` [m] from `origin`, in equal cells. Otherwise as above.
 Mesh<Tet4> box_tet4(const Vector3& size, std::array<int, 3> cells, BoxSplit split = BoxSplit::five_mirrored,
                     const Vector3& origin = Vector3::Zero());
-
-/// The two unit cubes of the thesis side by side along x: 12 nodes, 10 elements, the second cube mirrored. Groups
-/// "fixed" (x = 0), "end" (x = 2), "side" (the rest of the surface), all with outward faces, and "load_point", the node
-/// (2, 1, 1). Regions "cube_a", "cube_b".
-Mesh<Tet4> two_cubes();
 
 /// Sphere around the origin [m]: `refinement` = n layers between centre and surface, 20 n^3 elements, 10 n^2 + 2 nodes
 /// on the surface, the others inside (n = 1: the centre). Least quality above 0.6 for any n. Group "surface" contains

@@ -60,13 +60,6 @@ class BatchedTetrahedra {
     return report();
   }
 
-  /// Permanently removes the elements for which gone(element) is true: no force, no energy, not in the report.
-  /// O(elements), no allocation. Separated fragments may share blocks: S = float loses digits as they move apart.
-  template <class Gone>
-  void remove_if(Gone&& gone) {
-    layout_.remove_if(gone, [](std::size_t, int) {});
-  }
-
   /// Stored energy [J].
   double energy(const VectorX& u) noexcept {
     double sum = 0.0;

@@ -27,7 +27,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 /// A `Corotational` body at a displacement, several elements simultaneously: energy, force, and products with the
-/// stiffness of Corotational::semidefinite_tangent, which is positive semidefinite in every state. Its shear part is
+/// stiffness at constant rotations and cofactors, which is positive semidefinite in every state. Its shear part is
 /// R K R^T of Mueller and Gross (2004): that of the linear element with rotated gradients; its volume part is the
 /// Gauss-Newton matrix of lambda/2 (J - 1)^2. With the volume part of R K R^T instead, steps diverge at a Poisson ratio
 /// of 0.49. Each rotation is computed from that of the previous state. Blocks, sums and vectors as in
@@ -50,15 +50,6 @@ class CorotatedTetrahedra {
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
-  /// Permanently removes the elements for which gone(element) is true, as in BatchedTetrahedra. O(elements), no
-  /// allocation.
-  template <class Gone>
-  void remove_if(Gone&& gone) {
-    layout_.remove_if(gone, [this](std::size_t batch, int lane) {
-      for (Vector& g : rotated_[batch].gradient) TetrahedronBatches<S, N>::clear_lane(g, lane);
-      rotated_[batch].root_volume.set(lane, S(0));
-    });
-  }
 
   /// The next rotations are computed from those at rest, not from the last ones.
   void forget_rotations() noexcept {

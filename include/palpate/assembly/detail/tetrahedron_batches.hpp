@@ -118,22 +118,19 @@ struct TetrahedronBatches {
 
   Index node_count() const noexcept { return static_cast<Index>(first_copy.size()) - 1; }
 
-  /// Removes the elements for which gone(element) is true: their lanes become empty. Calls visit(batch, lane) for each
-  /// removed element. O(elements), no allocation.
-  template <class Gone, class Visit>
-  void remove_if(Gone&& gone, Visit&& visit) {
+  /// Removes the elements for which gone(element) is true: their lanes become empty. O(elements), no
+  /// allocation.
+  template <class Gone>
+  void remove_if(Gone&& gone) {
     for (std::size_t b = 0; b < batches.size(); ++b)
-      for (std::size_t lane = 0; lane < static_cast<std::size_t>(N); ++lane) {
-        NodeId& e = elements[b][lane];
+      for (int lane = 0; lane < N; ++lane) {
+        NodeId& e = elements[b][static_cast<std::size_t>(lane)];
         if (e < 0 || !gone(Index{e})) continue;
         e = -1;
-        for (Triple<Lanes<S, N>>& g : batches[b].gradient) clear_lane(g, static_cast<int>(lane));
-        batches[b].volume.set(static_cast<int>(lane), S(0));
-        visit(b, static_cast<int>(lane));
+        for (Triple<Lanes<S, N>>& g : batches[b].gradient)
+          for (Lanes<S, N>* x : {&g.x, &g.y, &g.z}) x->set(lane, S(0));
+        batches[b].volume.set(lane, S(0));
       }
-  }
-  static void clear_lane(Triple<Lanes<S, N>>& v, int lane) noexcept {
-    for (Lanes<S, N>* x : {&v.x, &v.y, &v.z}) x->set(lane, S(0));
   }
   /// Takes in the nodes of a mesh whose elements have kept their ids and shapes. `changed(batch)` is true for batches
   /// with elements that were removed, or have other nodes. O(rows), and O(elements) of their blocks.

@@ -49,11 +49,8 @@ class ContactSamples {
   /// Outward normal at a sample: the mean of those of the triangles around it, weighted by their areas; unit.
   Vector3 normal(int sample) const noexcept { return normal_[at(sample)].cast<double>(); }
 
-  /// The samples that belong to a triangle, those of the last level first.
-  std::span<const ContactSample> of_triangle(int t) const noexcept {
-    return {samples_.data() + first_of(t), static_cast<std::size_t>(first_of(t + 1) - first_of(t))};
-  }
-  /// Number of the first sample of a triangle; those of triangle t end where those of t + 1 begin.
+  /// Number of the first sample of a triangle, those of its last level first; those of triangle t end where those of
+  /// t + 1 begin.
   int first_of(int t) const noexcept { return first_[at(t)]; }
   /// The sample of a level nearest to a sample of another surface whose vertices have the same numbers; -1 when its
   /// triangles no longer exist. Checks the triangles around a vertex; no allocation.

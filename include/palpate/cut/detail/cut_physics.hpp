@@ -105,18 +105,6 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics : ElementLoads<E> {
     return f;
   }
 
-  /// Load of the remaining elements when those with gone(element) are removed: 3 per given node [N].
-  template <class Gone>
-  VectorX load_left(Gone&& gone) const {
-    VectorX sum = nodal_load;
-    for (Index e = 0; e < body.mesh.element_count(); ++e)
-      if (!gone(e))
-        for (int a = 0; a < E::nodes; ++a)
-          sum.template segment<3>(3 * Index{body.mesh.element_node(e, a)}) +=
-              load[static_cast<std::size_t>(e)].row(a).transpose();
-    return sum;
-  }
-
  private:
   ElementNodes<E> nodes_of_element(Index e) const { return element_nodes<E>(body.mesh, e); }
 

@@ -108,7 +108,6 @@ class CutSystem {
     compliance_ = folded;
     step_.reset();
   }
-  bool is_folded() const noexcept { return step_ == nullptr; }
   /// A step without changes, for ticks after `fold`. Folded systems only.
   std::shared_ptr<const CutStep> folded_step() const {
     auto step = std::make_shared<CutStep>();

@@ -15,10 +15,6 @@ void require_damping(double mass_damping, double stiffness_damping);
 /// Throws bad_argument for a vector that does not have one entry per dof.
 void require_entries(const VectorX& v, Index dofs);
 
-/// Checks the nodal masses [kg] that remain after elements have left, against `before` [kg], of every dof. Throws
-/// bad_argument for a wrong size, bad_density for a node that is heavier than before or has a negative mass.
-void require_mass_left(const VectorX& before, const VectorX& nodal_mass);
-
 /// Converts nodal masses to one mass per dof, three equal ones per node.
 VectorX mass_of_dofs(const VectorX& nodal_mass);
 
@@ -32,17 +28,6 @@ inline void require_entries(const VectorX& v, Index dofs) {
   if (v.size() != dofs)
     raise(SetupErrorKind::bad_argument, std::to_string(v.size()) + " entries for " + std::to_string(dofs) + " dofs",
           "Give three entries per node");
-}
-
-inline void require_mass_left(const VectorX& before, const VectorX& nodal_mass) {
-  if (3 * nodal_mass.size() != before.size())
-    raise(SetupErrorKind::bad_argument, "there are " + std::to_string(nodal_mass.size()) + " masses for " +
-                                            std::to_string(before.size() / 3) + " nodes");
-  for (Index i = 0; i < nodal_mass.size(); ++i)
-    if (!(nodal_mass[i] >= 0.0) || !(nodal_mass[i] <= before[3 * i] * (1.0 + 1e-9)))
-      raise(SetupErrorKind::bad_density,
-            "node " + std::to_string(i) + " has the mass " + number(nodal_mass[i]) + " after elements have left",
-            "Give lumped_mass(body, gone)");
 }
 
 inline VectorX mass_of_dofs(const VectorX& nodal_mass) {

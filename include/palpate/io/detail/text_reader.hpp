@@ -86,7 +86,6 @@ class TextReader {
 
   std::string_view line() const noexcept { return line_; }        ///< the current line, trimmed
   std::string_view rest() const noexcept { return trim(rest_); }  ///< the unread rest of it
-  Index line_number() const noexcept { return line_number_; }     ///< counted from 1
   const std::string& name() const noexcept { return name_; }
 
   /// The next word of the current line, empty at its end.

@@ -58,25 +58,6 @@ inline void require_mass(const DeformableBody& body) {
 
 namespace detail {
 
-/// Sets the nodal masses [kg] that remain after elements have left. Nodes that lose all mass are constrained at their
-/// displacement in u [m]. Returns the dofs of these nodes that were free.
-inline std::vector<Index> leave_mass(DeformableBody& body, const VectorX& nodal_mass, const VectorX& u) {
-  EssentialConditions& c = body.conditions;
-  std::vector<Index> bare;
-  for (Index dof = 0; dof < u.size(); ++dof) {
-    if (nodal_mass[dof / 3] > 0.0 || !(body.lumped[dof / 3] > 0.0)) continue;
-    c.prescribed[dof] = u[dof];
-    if (c.free_index[static_cast<std::size_t>(dof)] >= 0) bare.push_back(dof);
-    c.free_index[static_cast<std::size_t>(dof)] = -1;
-    c.constrained[static_cast<std::size_t>(dof / 3)] = 7;
-  }
-  std::erase_if(c.free_dofs, [&c](Index dof) { return c.is_constrained(dof); });
-  for (std::size_t i = 0; i < c.free_dofs.size(); ++i)
-    c.free_index[static_cast<std::size_t>(c.free_dofs[i])] = static_cast<Index>(i);
-  body.lumped = nodal_mass;
-  return bare;
-}
-
 /// Everything except the forces and the mass.
 template <Element E>
 DeformableBody body_without_mass(const Body<E>& rest, const Scene& scene) {

@@ -220,11 +220,6 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   HapticFEModel(const HapticFEModel&) = delete;
   HapticFEModel& operator=(const HapticFEModel&) = delete;
 
-  /// Current ratio of the stiffness to that of the linear tissue, along the force and across it. For the ticking
-  /// thread.
-  double axial_ratio() const noexcept { return stiffened_.axial_ratio(); }
-  double radial_ratio() const noexcept { return stiffened_.radial_ratio(); }
-
   /// As in the linear model, with the compliance of the newest tick. For one drawing thread. Allocates when there are
   /// more forces than in any earlier call.
   SolveReport displacement_with(std::span<const VertexForce> forces, VectorX& u) noexcept {

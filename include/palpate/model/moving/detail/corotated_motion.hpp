@@ -205,25 +205,6 @@ class CorotatedMotion {
     tetrahedra_.forget_rotations();
     set_state(u, VectorX::Zero(u.size()));
   }
-  /// Removes the elements for which gone(element) is true, permanently and with their mass. `nodal_mass` is the
-  /// remaining mass (lumped_mass(body, gone)) [kg], `load` the loads on the remaining body [N] (CutPhysics::load_left).
-  /// The remaining nodes keep their velocities; nodes without mass are constrained at their current positions. A
-  /// preconditioner with `change` (BlockJacobi) is updated; another one continues unchanged, which is correct but
-  /// slower. Throws bad_argument or bad_density, without a change.
-  template <class Gone>
-  void remove_elements(Gone&& gone, const VectorX& nodal_mass, const VectorX& load) {
-    require_entries(load, size());
-    require_mass_left(mass_, nodal_mass);
-    tetrahedra_.remove_if(gone);
-    for (const Index dof : detail::leave_mass(body_, nodal_mass, u_)) {
-      bare_.push_back(dof);
-      constrained_dofs_.push_back(dof);
-    }
-    mass_ = mass_of_dofs(nodal_mass);
-    load_ = body_.load = load;
-    if constexpr (requires { preconditioner_.change(body_); }) preconditioner_.change(body_);
-    set_state(u_, v_);
-  }
   /// Sets the forces from now on, replacing the loads of the scene [N]. Throws bad_argument for a wrong size; does not
   /// allocate.
   void set_load(const VectorX& load) {
@@ -244,10 +225,7 @@ class CorotatedMotion {
     tetrahedra_.apply(x, y);
     y = factors_.stiffness * y + factors_.mass * mass_.cwiseProduct(x);
   }
-  void precondition(const VectorX& r, VectorX& z) const noexcept {
-    preconditioner_.apply(r, z);
-    for (const Index dof : bare_) z[dof] = 0.0;
-  }
+  void precondition(const VectorX& r, VectorX& z) const noexcept { preconditioner_.apply(r, z); }
 
  private:
   static bool is_implicit_euler(const TimeScheme& s) noexcept {
@@ -364,7 +342,7 @@ class CorotatedMotion {
   ImplicitStep step_;
   Preconditioner preconditioner_;
   BoundedConjugateGradient gradients_;
-  std::vector<Index> constrained_dofs_, bare_;  // dofs; bare ones belong to nodes without an element
+  std::vector<Index> constrained_dofs_;
   VectorX u_, v_, a_, load_;
   VectorX trial_, velocity_, acceleration_, increment_, force_, residual_, damping_force_, inertia_;
   StepFactors factors_;

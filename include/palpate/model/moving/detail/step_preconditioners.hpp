@@ -28,7 +28,6 @@ struct StepFactors {
 /// - `update(tetrahedra, factors, u, again)`: called before the solves of a step; `again` is true when a renewal is
 ///   due.
 /// - `apply(r, z)`: z = P^-1 r, zero on constrained dofs.
-/// - `change(body)`, optional: called after elements were removed, with new lumped mass and conditions.
 // clang-format off
 template <class P, class Tetrahedra>
 concept StepPreconditioner =
@@ -44,8 +43,6 @@ class BlockJacobi {
  public:
   BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
 
-  /// Sets a new mass and new constrained dofs; the next update must have `again` = true.
-  void change(const DeformableBody& body);
   template <class Tetrahedra>
   void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool again) noexcept {
     if (!again) return;
@@ -111,11 +108,6 @@ inline BlockJacobi::BlockJacobi(const DeformableBody& body, const Body<Tet4>&, c
       straight_(3 * lumped_.size()),
       mixed_(straight_) {
   inverse_.resize(constrained_.size(), Matrix3::Zero());
-}
-
-inline void BlockJacobi::change(const DeformableBody& body) {
-  lumped_ = body.lumped;
-  constrained_ = body.conditions.constrained;
 }
 
 inline void BlockJacobi::apply(const VectorX& r, VectorX& z) const noexcept {

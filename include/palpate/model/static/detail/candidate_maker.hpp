@@ -34,8 +34,6 @@ class CandidateMaker {
 
   /// Every candidate once. Throws the errors of the set-up of Tet4 on the mesh as given.
   std::vector<SuggestedModel> make_all();
-  /// Of the fine tissue, or why it was not made.
-  const std::string& reference_remark() const noexcept { return reference_remark_; }
   /// Processor time of this thread since the construction [s].
   double seconds() const noexcept;
   /// Of the time for the suggestion; negative when it is over [s].
@@ -84,7 +82,7 @@ class CandidateMaker {
   std::unique_ptr<Base> base_;
   Cost tet4_, smoothed_, tet10_;
   double too_many_touched_ = infinity;  // touchable nodes with which a tick took clearly longer than the budget
-  std::string reference_remark_;
+  std::string reference_remark_;        // of the fine tissue, or why it was not made
 };
 
 }}  // namespace palpate
