@@ -1,4 +1,4 @@
-# palpate::compiled: the definitions of include/palpate (x.ipp next to x.hpp) and explicit instantiations (x.inst.ipp),
+# palpate::compiled: the definitions of include/palpate (files .ipp) and explicit instantiations (x.inst.ipp),
 # compiled once. Its sources are generated here, one per unit, which includes the definitions of the unit.
 
 # <unit> <patterns of files below include/palpate, separated by spaces>. A file belongs to the first unit with a

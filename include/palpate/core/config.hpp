@@ -14,8 +14,8 @@
 #error "palpate refuses -ffast-math: it removes the NaN checks that guard the device. Build without it."
 #endif
 
-// A header x.hpp declares, and has templates and small definitions; x.ipp next to it has the others. In header-only use
-// (palpate::palpate), x.hpp includes x.ipp at its end and every definition is inline. The target palpate::compiled
+// A header x.hpp declares, and has templates and small definitions; x.ipp, or several files .ipp, have the others. In
+// header-only use (palpate::palpate), it includes them at its end and every definition is inline. palpate::compiled
 // defines PALPATE_COMPILED: its library contains the definitions, and programs that link to it do not compile them. Its
 // sources with kernels for other processors (linear/detail/processor_kernels.hpp) define PALPATE_KERNEL_SET, so that
 // their inline functions are not merged with those of other flags.

@@ -93,9 +93,9 @@ class HapticServo {
   /// tick's own thread.
   void release() noexcept { tissue_.end_tick({}, {}); }
 
-  /// How much force it costs, roughly, that of more contacts than ServoOptions::contact allows only evenly spread ones
-  /// are kept (degraded_model): penetration of the deepest point left out in the last tick, relative to the deepest
-  /// push. For the tick's own thread.
+  /// Penetration of the deepest point that had no row in the last tick, relative to the deepest push: roughly the part
+  /// of the force that is missing since contacts are more than ServoOptions::contact allows (degraded_model). For the
+  /// tick's own thread.
   double missing_depth() const noexcept { return problem_.missing_depth(); }
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
