@@ -400,8 +400,7 @@ std::vector<Finding> compare(const char* name, const Scene& scene, const Run& ru
     if (has_diverged && !remembers && is_free(run.ticks[k]) && is_free(other.ticks[k])) has_diverged = false;
     for (std::size_t t = 0; t < run.ticks[k].size(); ++t) {
       const ToolTick &a = run.ticks[k][t], &b = other.ticks[k][t];
-      const double arm =
-          6.0 * scene.tools[t].radius;  // the length of a capsule: torques are equal within twice as much
+      const double arm = 3.0 * scene.tools[t].radius;  // of the ends of a capsule
       const double apart = tolerance > 0.0 ? difference(run, other, k, t, arm) : 0.0;
       const int tick = static_cast<int>(k), tool = static_cast<int>(t);
       const bool is_flagged = ((a.status.bits() | b.status.bits()) & excuses().bits()) != 0;
