@@ -3,6 +3,7 @@
 
 #include <palpate/io/detail/node_order.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
+#include <palpate/io/detail/text_reader.hpp>
 #include <palpate/io/file_mesh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::vtk {
