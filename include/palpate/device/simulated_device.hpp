@@ -136,6 +136,7 @@ class SimulatedDevice {
   const Vector3& velocity() const noexcept { return mechanics_.velocity(); }  ///< [m/s] exact
   const SimulatedEnergy& energy() const noexcept { return mechanics_.energy(); }
   const Vector3& last_force() const noexcept { return rendered_.force(); }  ///< [N] last written, limited
+  const Vector3& motor_force() const noexcept { return acting_; }           ///< [N] acting now, after the delay
   double time() const noexcept { return now_; }                             ///< [s] of the last sample
   std::uint64_t reads() const noexcept { return reads_; }
   const SimulatedOptions& options() const noexcept { return options_; }
