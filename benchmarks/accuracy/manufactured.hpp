@@ -49,9 +49,10 @@ VectorX consistent_load(const Mesh<E>& mesh, const Manufactured& field) {
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const ElementNodes<E> x = element_nodes<E>(mesh, e);
     for (const auto& point : FineRule<E>::points) {
-      const Vector3 xi = reference_point(point);
+      const Vector3 xi = detail::reference_point(point);
       const auto shape = E::shape(xi);
-      const Vector3 force = point_geometry<E>(x, xi, point.weight).volume * field.body_force(x.transpose() * shape);
+      const Vector3 force =
+          detail::point_geometry<E>(x, xi, point.weight).volume * field.body_force(x.transpose() * shape);
       for (int a = 0; a < E::nodes; ++a) load.segment<3>(3 * Index{mesh.element_node(e, a)}) += shape[a] * force;
     }
   }
@@ -62,14 +63,14 @@ template <Element E>
 Errors errors_of(const Body<E>& body, const VectorX& u, const Manufactured& field) {
   double missed = 0.0, whole = 0.0, missed_energy = 0.0, energy = 0.0;
   const Matrix6& d = body.elasticity.front();
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
-    const ElementNodes<E> moved = element_displacements<E>(body.mesh, e, u);
+    const ElementNodes<E> moved = detail::element_displacements<E>(body.mesh, e, u);
     const auto points = state.template points<FineRule<E>>(e);
     for (std::size_t q = 0; q < points.size(); ++q) {
       const auto& point = points[q];
       const Vector3 exact = field.displacement(point.position);
-      const Vector3 found = moved.transpose() * E::shape(reference_point(FineRule<E>::points[q]));
+      const Vector3 found = moved.transpose() * E::shape(detail::reference_point(FineRule<E>::points[q]));
       const Vector6 strain = field.strain(point.position), difference = point.strain - strain;
       missed += point.volume * (found - exact).squaredNorm();
       whole += point.volume * exact.squaredNorm();

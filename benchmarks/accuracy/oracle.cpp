@@ -67,7 +67,7 @@ void fix_lone_nodes(const Mesh<E>& mesh, Scene& scene) {
 template <Element E>
 Body<E> read_body(const Mesh<E>& mesh, const json& load_case, const Scene& scene) {
   Body<E> body = make_body(mesh, solve_case::read_materials(load_case));
-  body.initial_strain = initial_strains_by_region(mesh, scene);
+  body.initial_strain = detail::initial_strains_by_region(mesh, scene);
   return body;
 }
 

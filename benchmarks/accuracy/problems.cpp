@@ -20,10 +20,10 @@ std::string count(Index n) {
 template <Element E>
 double true_error(const Body<E>& body, const VectorX& u, const LameSphere& sphere) {
   const Matrix6 compliance = body.elasticity.front().inverse();
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   double square = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e)
-    for (const StressPoint& point : state.template points<typename E::MassQuadrature>(e)) {
+    for (const detail::StressPoint& point : state.template points<typename E::MassQuadrature>(e)) {
       const Vector6 missed = sphere.stress(point.position) - point.stress;
       square += point.volume * missed.dot(compliance * missed);
     }
@@ -90,7 +90,7 @@ void solve_cantilever(Table& table, Checks& checks) {
     };
     if (std::same_as<E, Hex8> && n == 2) agrees(0.00882890013);
     if (std::same_as<E, Hex8> && n == 4) agrees(0.00976842);
-    if constexpr (HasSmoothedStrain<E>) {  // not a minimum of the energy: it may converge from either side
+    if constexpr (detail::HasSmoothedStrain<E>) {  // not a minimum of the energy: it may converge from either side
       checks.expect(std::abs(tip - converged) < std::abs(last - converged), element_name<E>() + ": does not converge");
     } else {
       checks.expect(tip > last, element_name<E>() + ": the deflection does not grow with refinement");
@@ -130,7 +130,7 @@ void solve_cook(double nu, double converged, Table& table, Checks& checks) {
     };
     if (std::same_as<E, Hex8> && n == 8) agrees(nu < 0.4 ? 8.134 : nu < 0.4995 ? 2.701 : 2.225);
   }
-  if constexpr (E::order == 2 || HasMeanDilatation<E>)
+  if constexpr (E::order == 2 || detail::HasMeanDilatation<E>)
     checks.expect(std::abs(error) < 0.05,
                   element_name<E>() + ", nu " + text(nu) + ": error above 5 % on Cook's membrane");
 }

@@ -36,8 +36,8 @@ VectorX solve_free(const BlockMatrix& k, const EssentialConditions& conditions, 
 template <Element E>
 Solved solve_static(const Body<E>& body, const Scene& scene, const VectorX& more_load = {}) {
   const auto boundary = extract_boundary<E>(body.mesh);
-  const EssentialConditions conditions = resolve_essential(body.mesh, boundary, scene);
-  VectorX load = applied_load(body, boundary, scene) + initial_strain_load(body);
+  const EssentialConditions conditions = detail::resolve_essential(body.mesh, boundary, scene);
+  VectorX load = detail::applied_load(body, boundary, scene) + detail::initial_strain_load(body);
   if (more_load.size() > 0) load += more_load;
   if (!scene.gravity().isZero(0.0)) {
     const VectorX mass = nodal_mass(body);
@@ -61,7 +61,7 @@ Solved solve_static(const Body<E>& body, const Scene& scene, const VectorX& more
 /// Mean displacement of a loaded group in the direction of a dead traction: twice the energy over the force.
 template <Element E>
 double mean_displacement(const Body<E>& body, const Scene& scene, const Solved& solved, double total_force) {
-  return applied_load(body, extract_boundary<E>(body.mesh), scene).dot(solved.displacement) / total_force;
+  return detail::applied_load(body, extract_boundary<E>(body.mesh), scene).dot(solved.displacement) / total_force;
 }
 
 }  // namespace accuracy

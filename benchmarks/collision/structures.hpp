@@ -15,14 +15,14 @@ struct Surface {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
   const Vector3& at(int v) const { return positions[static_cast<std::size_t>(v)]; }
-  Box box_of(int t) const {
-    Box box;
+  detail::Box box_of(int t) const {
+    detail::Box box;
     for (int v : triangles[static_cast<std::size_t>(t)]) box.include(at(v));
     return box;
   }
   double distance2(int t, const Vector3& p) const {
     const Triangle& v = triangles[static_cast<std::size_t>(t)];
-    const TrianglePoint on = closest_point(p, at(v[0]), at(v[1]), at(v[2]));
+    const detail::TrianglePoint on = detail::closest_point(p, at(v[0]), at(v[1]), at(v[2]));
     return (p - on.weights[0] * at(v[0]) - on.weights[1] * at(v[1]) - on.weights[2] * at(v[2])).squaredNorm();
   }
 };
@@ -39,7 +39,7 @@ class BoundingVolumes {
   }
 
  private:
-  Bvh bvh_;
+  detail::Bvh bvh_;
 };
 
 /// A balanced binary tree of triangles, split at the median of their centres. A query is enlarged by the largest
@@ -71,7 +71,7 @@ class BinaryTree {
   }
   void split(int begin, int end) {
     if (end - begin <= 1) return;
-    Box box;
+    detail::Box box;
     for (int i = begin; i < end; ++i) box.include(items_[static_cast<std::size_t>(i)].centre);
     int axis = 0;
     (box.high - box.low).maxCoeff(&axis);
@@ -112,7 +112,7 @@ class Octree {
 
  private:
   struct Cell {
-    Box box;
+    detail::Box box;
     int child = -1;  // first of eight
     std::vector<int> items;
   };
@@ -129,7 +129,7 @@ class Octree {
     // Beyond this depth cells are smaller than the triangles in them: the surface of a cube has 6 * 4^depth cells.
     const int most = 1 + static_cast<int>(0.5 * std::log2(static_cast<double>(boxes_.size()) / 6.0));
     if (cells_[i].items.size() <= 8 || depth >= most) return;
-    const Box box = cells_[i].box;
+    const detail::Box box = cells_[i].box;
     const Vector3 middle = 0.5 * (box.low + box.high);
     const std::vector<int> items = std::move(cells_[i].items);
     cells_[i].items.clear();
@@ -144,7 +144,7 @@ class Octree {
         c.box.high[a] = high ? box.high[a] : middle[a];
       }
       for (int t : items) {
-        const Box& b = boxes_[static_cast<std::size_t>(t)];
+        const detail::Box& b = boxes_[static_cast<std::size_t>(t)];
         if ((b.low.array() <= c.box.high.array()).all() && (b.high.array() >= c.box.low.array()).all())
           c.items.push_back(t);
       }
@@ -165,7 +165,7 @@ class Octree {
   }
 
   std::vector<Cell> cells_;
-  std::vector<Box> boxes_;
+  std::vector<detail::Box> boxes_;
   std::vector<unsigned> seen_;
   unsigned query_ = 0;
 };

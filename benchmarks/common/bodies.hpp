@@ -101,15 +101,15 @@ inline SupportedBody organ_like(int layers, double edge) {
 
 /// Equations of a constrained body, and the layout of their dofs for the solver.
 struct System {
-  SparseMatrix lower;
+  detail::SparseMatrix lower;
   DofLayout layout;          ///< without kept dofs
   std::vector<Index> patch;  ///< free dofs of the touched nodes
 
   explicit System(const SupportedBody& supported) {
     Scene scene;
     scene.fix(supported.constrained);
-    const auto conditions = resolve_essential(supported.mesh, extract_boundary<Tet4>(supported.mesh), scene);
-    lower = free_matrix(assemble_stiffness<Tet4>(supported.body(), {}), conditions);
+    const auto conditions = detail::resolve_essential(supported.mesh, extract_boundary<Tet4>(supported.mesh), scene);
+    lower = detail::free_matrix(assemble_stiffness<Tet4>(supported.body(), {}), conditions);
     layout.positions = supported.mesh.positions;
     for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
     for (NodeId node : supported.touched)

@@ -30,8 +30,8 @@ struct Block {
   std::vector<BoundaryFace> boundary;
   CutPhysics<Tet4> physics;
   CutTopology<Tet4> topology;
-  CutSurface<Tet4> surface;
-  CutSystem<Tet4> system;
+  detail::CutSurface<Tet4> surface;
+  detail::CutSystem<Tet4> system;
 
   /// Nodes above the height `kept_above` [m] are kept in addition to the touchable ones: a cuttable region.
   explicit Block(int n, double kept_above = 1.0)
@@ -39,7 +39,7 @@ struct Block {
         boundary(extract_boundary<Tet4>(mesh)),
         physics(make_body(mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}),
                 boundary, scene),
-        topology(mesh, resolve_essential(mesh, boundary, scene).constrained),
+        topology(mesh, detail::resolve_essential(mesh, boundary, scene).constrained),
         surface(topology, boundary, scene),
         system(topology, physics, kept(kept_above)) {}
 
@@ -47,7 +47,7 @@ struct Block {
     std::vector<NodeId> nodes = surface.nodes();
     for (NodeId node = 0; node < mesh.node_count(); ++node)
       if (mesh.position(node)[2] > above) nodes.push_back(node);
-    sort_unique(nodes);
+    detail::sort_unique(nodes);
     return nodes;
   }
 
@@ -67,12 +67,12 @@ struct Block {
                            {0.0501, 0.05 + 0.5 * length, 0.1 - depth},
                            {0.0501, 0.05 - 0.5 * length, 0.2},
                            {0.0501, 0.05 + 0.5 * length, 0.2}};
-    return {{}, swept_faces(topology, sweep, [&](NodeId node) { return mesh.position(node); })};
+    return {{}, detail::swept_faces(topology, sweep, [&](NodeId node) { return mesh.position(node); })};
   }
 };
 
 std::vector<Vector3> positions_of(const std::vector<NodeId>& nodes, const CutTopology<Tet4>& t,
-                                  const CutSystem<Tet4>& system) {
+                                  const detail::CutSystem<Tet4>& system) {
   std::vector<Vector3> x;
   for (const NodeId node : nodes)
     x.push_back(t.mesh().position(node) + system.displacement().segment<3>(3 * Index{node}));
@@ -84,7 +84,8 @@ struct Cost {
   Index rank = 0, added = 0;
 };
 
-double largest_difference(const CutSystem<Tet4>& a, const CutSystem<Tet4>& b, const CutTopology<Tet4>& t) {
+double largest_difference(const detail::CutSystem<Tet4>& a, const detail::CutSystem<Tet4>& b,
+                          const CutTopology<Tet4>& t) {
   const auto x = a.folded_step(), y = b.folded_step();
   double wrong = 0.0, scale = 0.0;
   std::vector<std::pair<Index, Index>> same;
@@ -104,18 +105,18 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
   Cost cost;
   for (int i = 0; i < repeats; ++i) {
     CutTopology<Tet4> topology = b.topology;
-    CutSurface<Tet4> surface = b.surface;
-    CutSystem<Tet4> system = b.system;
+    detail::CutSurface<Tet4> surface = b.surface;
+    detail::CutSystem<Tet4> system = b.system;
     const std::vector<double> bounds(b.surface.nodes().size(), 1.0);
-    CutView view;
+    detail::CutView view;
     const auto contact = [&] {
       ContactSurface made(positions_of(surface.nodes(), topology, system), surface.triangles());
       made.set_materials(detail::contact_materials(b.physics.body, surface.elements()));
       const auto shell = surface.shell(topology);
       made.add_shell(positions_of(shell.others, topology, system), shell.triangles);
-      return std::make_shared<CutContact>(system, surface, std::move(made), 4e-3, ContactParameters{}, 1);
+      return std::make_shared<detail::CutContact>(system, surface, std::move(made), 4e-3, ContactParameters{}, 1);
     };
-    TopologyChange<Tet4> change;
+    detail::TopologyChange<Tet4> change;
     rendered.push_back(bench::seconds_of([&] {
       change = topology.apply(order);
       surface.update(topology, change);
@@ -127,19 +128,19 @@ Cost measure(const Block& b, const CutOrder& order, int repeats) {
     cost.rank = view.step->rank();
     cost.added = system.added();
     if (i > 0) continue;
-    std::unique_ptr<CutSystem<Tet4>> fresh;
-    cost.rebuilt =
-        bench::seconds_of([&] { fresh = std::make_unique<CutSystem<Tet4>>(topology, b.physics, surface.nodes()); });
+    std::unique_ptr<detail::CutSystem<Tet4>> fresh;
+    cost.rebuilt = bench::seconds_of(
+        [&] { fresh = std::make_unique<detail::CutSystem<Tet4>>(topology, b.physics, surface.nodes()); });
     cost.error = largest_difference(system, *fresh, topology);
     double sum = 0.0;
-    const auto read = [&](const CutView& v) {
+    const auto read = [&](const detail::CutView& v) {
       return bench::median_seconds([&] {
                for (int k = 0; k < 10000; ++k) sum += v.compliance(k * 7 % 97, k * 13 % 89)(0, 0);
              }) /
              10000;
     };
     cost.read = read(view);
-    const CutView folded{view.contact, system.folded_step()};
+    const detail::CutView folded{view.contact, system.folded_step()};
     cost.read_folded = read(folded);
     if (!std::isfinite(sum)) cost.error = infinity;
   }
@@ -176,9 +177,9 @@ void report(bench::RowFile& rows, const std::string& what, const Cost& c, double
 /// Only the factorisation by Eigen, without compliance.
 void eigen_refactor(bench::RowFile& rows, const Block& b, int n, double rendered) {
   const Body<Tet4> body = make_body(b.mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
-  const EssentialConditions conditions = resolve_essential(b.mesh, b.boundary, b.scene);
-  const SparseMatrix lower = free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt;
+  const EssentialConditions conditions = detail::resolve_essential(b.mesh, b.boundary, b.scene);
+  const detail::SparseMatrix lower = detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
+  Eigen::SimplicialLLT<detail::SparseMatrix, Eigen::Lower> llt;
   const double seconds = bench::seconds_of([&] { llt.compute(lower); });
   const VectorX x = VectorX::Ones(lower.rows()), load = lower.selfadjointView<Eigen::Lower>() * x;
   const double wrong = (llt.solve(load) - x).cwiseAbs().maxCoeff();

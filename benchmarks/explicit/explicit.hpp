@@ -29,11 +29,10 @@ inline std::vector<Index> free_dofs(const Mesh<Tet4>& mesh, double above) {
 }
 
 template <class Scheme, class S = double>
-ExplicitMotion<BatchedTetrahedra<NeoHookean, S>, Scheme> motion_of(const HyperelasticBody<Tet4, NeoHookean>& body,
-                                                                   double free_above,
-                                                                   const ExplicitOptions& options = {}) {
-  return {BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free_dofs(body.rest.mesh, free_above),
-          element_frequency_bound(body.rest), options};
+ExplicitMotion<detail::BatchedTetrahedra<NeoHookean, S>, Scheme> motion_of(
+    const HyperelasticBody<Tet4, NeoHookean>& body, double free_above, const ExplicitOptions& options = {}) {
+  return {detail::BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free_dofs(body.rest.mesh, free_above),
+          detail::element_frequency_bound(body.rest), options};
 }
 
 /// Force per element: batches compared with a plain loop over elements.

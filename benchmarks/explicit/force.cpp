@@ -11,7 +11,7 @@ namespace {
 class PlainLoop {
  public:
   explicit PlainLoop(const Mesh<Tet4>& mesh) : mesh_(mesh) {
-    for (Index e = 0; e < mesh.element_count(); ++e) geometry_.push_back(constant_geometry<Tet4>(mesh, e));
+    for (Index e = 0; e < mesh.element_count(); ++e) geometry_.push_back(detail::constant_geometry<Tet4>(mesh, e));
   }
   void force(const VectorX& u, VectorX& f) const {
     const double lambda = soft.small_strain().lame_lambda(), mu = soft.small_strain().shear_modulus();
@@ -36,7 +36,7 @@ class PlainLoop {
 
  private:
   const Mesh<Tet4>& mesh_;
-  std::vector<PointGeometry<Tet4>> geometry_;
+  std::vector<detail::PointGeometry<Tet4>> geometry_;
 };
 
 std::string nanoseconds(double seconds) {
@@ -46,7 +46,7 @@ std::string nanoseconds(double seconds) {
 template <class S>
 void measure(bench::RowFile& rows, const HyperelasticBody<Tet4, NeoHookean>& body, const PlainLoop& plain,
              const VectorX& u, const char* scalar, double most) {
-  BatchedTetrahedra<NeoHookean, S> batched(body);
+  detail::BatchedTetrahedra<NeoHookean, S> batched(body);
   VectorX exact(u.size()), f(u.size());
   const auto elements = static_cast<double>(body.rest.mesh.element_count());
   const auto [ours, theirs] = bench::medians_in_turns([&] { batched.force(u, f); }, [&] { plain.force(u, exact); },

@@ -79,7 +79,7 @@ std::vector<TestPlace> places_on(const TestBody& body, double radius, double mar
   if (body.edge_a != body.edge_b) return places_beside_edge(body, radius, seed, count);
   const Mesh<Tet4>& mesh = body.tetrahedra;
   const auto boundary = extract_boundary<Tet4>(mesh);
-  const auto faces = resolve_faces(mesh, boundary, body.touched);
+  const auto faces = detail::resolve_faces(mesh, boundary, body.touched);
   const auto normal = [&](const BoundaryFace& f) -> Vector3 {
     const Vector3 a = mesh.position(f.nodes[0]);
     return (mesh.position(f.nodes[1]) - a).cross(mesh.position(f.nodes[2]) - a).normalized();
@@ -112,7 +112,7 @@ std::vector<TestPlace> places_on(const TestBody& body, double radius, double mar
 
 double mean_facet(const TestBody& body) {
   const Mesh<Tet4>& mesh = body.tetrahedra;
-  const auto faces = resolve_faces(mesh, extract_boundary<Tet4>(mesh), body.touched);
+  const auto faces = detail::resolve_faces(mesh, extract_boundary<Tet4>(mesh), body.touched);
   double sum = 0.0;
   for (const BoundaryFace& f : faces) {
     const Vector3 a = mesh.position(f.nodes[0]), b = mesh.position(f.nodes[1]), c = mesh.position(f.nodes[2]);

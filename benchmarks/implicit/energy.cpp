@@ -26,7 +26,7 @@ constexpr double young = 3e3, nu = 0.4, density = 1000.0;
 /// Stored energy of a body at a displacement; of a viscoelastic one, that of full relaxation.
 template <Element E, LargeStrainMaterial M>
 auto energy_of(HyperelasticBody<E, M> body) {
-  if constexpr (HasSmoothedStrain<E>) {
+  if constexpr (detail::HasSmoothedStrain<E>) {
     return [force = SmoothedTetrahedra<M>(body)](const VectorX& u) mutable { return force.energy(u); };
   } else {
     auto elastic = std::make_shared<LargeStrain<E, M>>(std::move(body));

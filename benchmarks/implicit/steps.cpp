@@ -14,14 +14,15 @@ struct Comparison {
   double h;
   LargeStrain<Tet4, Corotated> force;
   ImplicitDynamics solved;
-  CorotatedMotion<LinearElastic, double> norm;  // for products with M + h^2 K
-  double increment = 0.0, contact = 0.0;        // largest errors so far
+  detail::CorotatedMotion<LinearElastic, double> norm;  // for products with M + h^2 K
+  double increment = 0.0, contact = 0.0;                // largest errors so far
 
   Comparison(const Pressing& p, double step)
       : pressing(p),
         h(step),
         force(p.body),
-        solved(make_deformable_body(p.body, p.scene), {.newton = {.maximum_iterations = 60, .tolerance = 1e-10}}),
+        solved(detail::make_deformable_body(p.body, p.scene),
+               {.newton = {.maximum_iterations = 60, .tolerance = 1e-10}}),
         norm(p.body, p.scene) {}
 
   double length(const VectorX& x) {
@@ -83,8 +84,8 @@ Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, st
 }
 
 template <class S, class Preconditioner = BlockJacobi>
-Measured run_ours(const Pressing& pressing, double h, const CorotatedMotionOptions& options) {
-  CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
+Measured run_ours(const Pressing& pressing, double h, const detail::CorotatedMotionOptions& options) {
+  detail::CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
   return run(pressing, h, motion, [&](const VectorX& prescribed) {
     motion.set_prescribed(prescribed);
     return motion.step(h).solve.iterations;
@@ -100,8 +101,8 @@ Measured run_plain(const Pressing& pressing, double h, double tolerance) {
 }
 
 /// Options of a typical haptic step: an error of one percent.
-CorotatedMotionOptions typical_options() {
-  CorotatedMotionOptions options;
+detail::CorotatedMotionOptions typical_options() {
+  detail::CorotatedMotionOptions options;
   options.solve.tolerance = 3e-3;
   return options;
 }
@@ -146,7 +147,7 @@ void measure_steps(bench::RowFile& rows, int n, double budget) {
             .ratio = plain.time / time,
             .bound = bench::at_least(5.6),
             .error = converged(plain)});
-  CorotatedMotionOptions o = typical_options();
+  detail::CorotatedMotionOptions o = typical_options();
   add_short_cut(rows, pressing, "double", run_ours<double>(pressing, h, o), ours);
   o.check = false;
   add_short_cut(rows, pressing, "without the check", run_ours<float>(pressing, h, o), ours);
@@ -172,7 +173,7 @@ void measure_preconditioners(bench::RowFile& rows, int n) {
   for (const double h : {1e-3, 4e-3, 16e-3}) {
     const Measured jacobi = run_ours<float>(pressing, h, typical_options());
     const Measured rotated = run_ours<float, CorotatedFactor>(pressing, h, typical_options());
-    CorotatedMotionOptions two = typical_options();
+    detail::CorotatedMotionOptions two = typical_options();
     two.solve = {2, 0.0};
     const Measured fixed = run_ours<float, CorotatedFactor>(pressing, h, two);
     const Measured renewed = run_ours<float, RenewedFactor>(pressing, h, typical_options());

@@ -101,7 +101,7 @@ inline void print(const Row& row, const Truth& truth, const Row& before) {
 /// An element that reports that it locks at this Poisson's ratio is measured, but not checked.
 template <Element E>
 constexpr bool may_lock(double poisson_ratio) {
-  if constexpr (SaysWhenItLocks<E>)
+  if constexpr (detail::SaysWhenItLocks<E>)
     return poisson_ratio > std::max(0.49, E::locking_poisson_ratio);
   else
     return false;

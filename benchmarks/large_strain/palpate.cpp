@@ -58,7 +58,7 @@ class QuasiNewtonBlock : public Method {
   HyperelasticBody<E, NeoHookean> body_;
   std::vector<NodeId> bottom_, square_;
   std::unique_ptr<TissueMotion> motion_;
-  std::unique_ptr<EnergyForces> exact_;
+  std::unique_ptr<detail::EnergyForces> exact_;
   VectorX prescribed_, f_;
 };
 

@@ -18,7 +18,7 @@ class NewtonBlock : public Method {
     int count = 0;
     for (int& d : dof_)
       if (d >= 0) d = std::exchange(count, count + 3);
-    for (Index e = 0; e < mesh_.element_count(); ++e) geometry_.push_back(constant_geometry<Tet4>(mesh_, e));
+    for (Index e = 0; e < mesh_.element_count(); ++e) geometry_.push_back(detail::constant_geometry<Tet4>(mesh_, e));
     mass_ = lumped_mass(make_body(mesh_, std::vector{bench::tissue}));
     x_ = Eigen::Map<const VectorX>(mesh_.positions.front().data(), 3 * mesh_.node_count());
     v_ = VectorX::Zero(x_.size());
@@ -154,11 +154,11 @@ class NewtonBlock : public Method {
   std::vector<NodeId> square_;
   StableNeoHookean law_;
   std::vector<int> dof_;  // first free dof of every node, -1 for prescribed ones
-  std::vector<decltype(constant_geometry<Tet4>(std::declval<Mesh<Tet4>>(), 0))> geometry_;
+  std::vector<decltype(detail::constant_geometry<Tet4>(std::declval<Mesh<Tet4>>(), 0))> geometry_;
   VectorX mass_, x_, v_, predicted_;
-  SparseMatrix k_;
+  detail::SparseMatrix k_;
   std::vector<Index> place_, diagonal_;
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
+  Eigen::SimplicialLDLT<detail::SparseMatrix> solver_;
   double scale_ = 0.0;
 };
 

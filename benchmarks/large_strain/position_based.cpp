@@ -15,7 +15,7 @@ class PositionBasedBlock : public Method {
     for (const double m : lumped_mass(make_body(mesh_, std::vector{bench::tissue}))) inverse_mass_.push_back(1.0 / m);
     for (const auto* list : {&block.bottom, &block.square})
       for (const NodeId i : *list) inverse_mass_[static_cast<std::size_t>(i)] = 0.0;
-    for (Index e = 0; e < mesh_.element_count(); ++e) geometry_.push_back(constant_geometry<Tet4>(mesh_, e));
+    for (Index e = 0; e < mesh_.element_count(); ++e) geometry_.push_back(detail::constant_geometry<Tet4>(mesh_, e));
   }
   void step(const Vector3& square) override {
     const double dt = step_length / substeps_;
@@ -64,7 +64,7 @@ class PositionBasedBlock : public Method {
   int substeps_;
   std::vector<Vector3> place_, before_, velocity_;
   std::vector<double> inverse_mass_;
-  std::vector<decltype(constant_geometry<Tet4>(std::declval<Mesh<Tet4>>(), 0))> geometry_;
+  std::vector<decltype(detail::constant_geometry<Tet4>(std::declval<Mesh<Tet4>>(), 0))> geometry_;
   Vector3 moved_ = Vector3::Zero();
   StableNeoHookean law_;
 };

@@ -68,7 +68,7 @@ Vector3 elastic_force(const Mesh<Tet4>& mesh, const std::vector<NodeId>& on, Pla
   Vector3 sum = Vector3::Zero();
   for (Index e = 0; e < mesh.element_count(); ++e) {
     Vector3 gradient = Vector3::Zero();
-    const auto g = constant_geometry<Tet4>(mesh, e);
+    const auto g = detail::constant_geometry<Tet4>(mesh, e);
     for (int a = 0; a < 4; ++a)
       if (counted[static_cast<std::size_t>(mesh.element_node(e, a))] != 0) gradient += g.gradient.row(a).transpose();
     if (gradient.isZero(0.0)) continue;

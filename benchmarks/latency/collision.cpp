@@ -47,7 +47,7 @@ struct Sheet {
   double squared_distance(int t, const Vector3& p) const noexcept {
     const Triangle& v = triangles[static_cast<std::size_t>(t)];
     const auto at = [&](int i) -> const Vector3& { return positions[static_cast<std::size_t>(i)]; };
-    const TrianglePoint on = closest_point(p, at(v[0]), at(v[1]), at(v[2]));
+    const detail::TrianglePoint on = detail::closest_point(p, at(v[0]), at(v[1]), at(v[2]));
     return (p - (on.weights[0] * at(v[0]) + on.weights[1] * at(v[1]) + on.weights[2] * at(v[2]))).squaredNorm();
   }
   int count_near(const Vector3& p) const noexcept {
@@ -101,7 +101,7 @@ void closest(benchmark::State& state) {
 }
 void refit(benchmark::State& state) {
   const Sheet& s = sheet(state);
-  Bvh bvh(s.triangles, s.positions);
+  detail::Bvh bvh(s.triangles, s.positions);
   bool there = false;
   for (auto _ : state) bvh.refit(s.triangles, (there = !there) ? s.moved : s.positions);
   bvh.refit(s.triangles, s.positions);

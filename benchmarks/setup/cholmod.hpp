@@ -19,7 +19,7 @@ class Cholmod {
   static void set_threads(int count) noexcept;
 
   /// Analyses the symmetric matrix with this lower triangle. `lower` must outlive this object.
-  explicit Cholmod(const palpate::SparseMatrix& lower);
+  explicit Cholmod(const palpate::detail::SparseMatrix& lower);
   ~Cholmod();
 
   double analysis_seconds() const noexcept;

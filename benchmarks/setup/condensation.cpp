@@ -12,7 +12,7 @@ using namespace palpate;
 void measure_condensation(Session& session) {
   for (const int n : {16, 24}) {
     const bench::System system(bench::standard_block(n));
-    const CholeskyAnalysis plain(system.lower, system.layout), keeping(system.lower, system.keeping_patch());
+    const detail::CholeskyAnalysis plain(system.lower, system.layout), keeping(system.lower, system.keeping_patch());
     SparseCholesky whole, interior;
     MatrixX schur;
     const auto [condensed, factorised] = bench::medians_in_turns(

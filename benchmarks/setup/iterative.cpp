@@ -23,20 +23,21 @@ void measure_block(Session& session, int n) {
   const bench::SupportedBody body = bench::standard_block(n);
   Scene scene;
   scene.fix(body.constrained);
-  const auto conditions = resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), scene);
+  const auto conditions = detail::resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), scene);
   const BlockMatrix k = assemble_stiffness<Tet4>(body.body(), {});
   const VectorX b = bench::random_matrix(conditions.free_count(), 1);
   VectorX x(b.size()), product(b.size());
-  FreeStiffness op(k, conditions, {});
-  const double prepare = bench::median_seconds([&] { op = FreeStiffness(k, conditions, {}); }, {.least = 1, .most = 3});
-  ConjugateGradientSolver solver(b.size());
+  detail::FreeStiffness op(k, conditions, {});
+  const double prepare =
+      bench::median_seconds([&] { op = detail::FreeStiffness(k, conditions, {}); }, {.least = 1, .most = 3});
+  detail::ConjugateGradientSolver solver(b.size());
   SolveReport report;
   const double solve = bench::median_seconds([&] { report = solver.solve_into(op, b, x); }, {.least = 1, .most = 3});
   op.apply(x, product);
   const double memory = static_cast<double>(k.bytes() + op.bytes() + solver.bytes());
 
   const bench::System system(body);
-  const CholeskyAnalysis analysis(system.lower, system.layout);
+  const detail::CholeskyAnalysis analysis(system.lower, system.layout);
   session.rows.add({.target = "w",
                     .what = at_size("memory of conjugate gradients / peak of the factorisation", n),
                     .figure = bench::megabytes(memory),
@@ -45,7 +46,9 @@ void measure_block(Session& session, int n) {
                     .bound = bench::at_most(0.5),
                     .error = error_over((b - product).norm() / b.norm(), 1e-11, "residual")});
   const double factorise = bench::median_seconds(
-      [&] { const SparseCholesky factor(CholeskyAnalysis(system.lower, system.layout), system.lower, SetupLimits{}); },
+      [&] {
+        const SparseCholesky factor(detail::CholeskyAnalysis(system.lower, system.layout), system.lower, SetupLimits{});
+      },
       {.least = 1, .most = 1});
   inform(session, at_size("preparing conjugate gradients / analysing and factorising", n), bench::milliseconds(prepare),
          bench::milliseconds(factorise), prepare / factorise);

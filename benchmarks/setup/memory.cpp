@@ -20,7 +20,7 @@ void compare(Session& session, const std::string& what, double predicted, double
 }
 
 /// 1 when a limit just below the prediction is refused as too large, and one just above is accepted.
-double refusal(const bench::System& system, const CholeskyAnalysis& analysis) {
+double refusal(const bench::System& system, const detail::CholeskyAnalysis& analysis) {
   SetupLimits limits;
   limits.memory = static_cast<std::size_t>(1.01 * analysis.peak_bytes());
   const SparseCholesky fits(analysis, system.lower, limits);
@@ -38,7 +38,7 @@ double refusal(const bench::System& system, const CholeskyAnalysis& analysis) {
 void measure_memory(Session& session) {
   for (const int n : {16, 24}) {
     const bench::System system(bench::standard_block(n));
-    const CholeskyAnalysis plain(system.lower, system.layout), keeping(system.lower, system.keeping_patch());
+    const detail::CholeskyAnalysis plain(system.lower, system.layout), keeping(system.lower, system.keeping_patch());
     const double whole = bench::peak_growth([&] { const SparseCholesky f(plain, system.lower, SetupLimits{}); });
     const double patch = bench::peak_growth([&] {
       MatrixX schur;

@@ -47,7 +47,7 @@ void measure_block(Session& session, const bench::System& system, const SparseCh
 void measure_solves(Session& session) {
   for (const int n : {10, 16, 24}) {
     const bench::System system(bench::standard_block(n));
-    SparseCholesky solver(CholeskyAnalysis(system.lower, system.layout), system.lower, SetupLimits{});
+    SparseCholesky solver(detail::CholeskyAnalysis(system.lower, system.layout), system.lower, SetupLimits{});
     measure_single(session, system, solver, n);
     if (n >= 16)
       for (const int columns : {16, 64}) measure_block(session, system, solver, n, columns);

@@ -67,7 +67,7 @@ void inform(Session& session, std::string what, std::string figure, std::string 
 
 /// Threads on which fronts are timed, each with a copy of the system: two if there is memory for both; one where the
 /// memory of the machine is not known.
-int timed_threads([[maybe_unused]] const CholeskyAnalysis& analysis) {
+int timed_threads([[maybe_unused]] const detail::CholeskyAnalysis& analysis) {
 #if defined(__linux__)
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (2.0 * analysis.peak_bytes(1) < 0.7 * memory) return 2;
@@ -76,8 +76,8 @@ int timed_threads([[maybe_unused]] const CholeskyAnalysis& analysis) {
 }
 
 /// What more threads would give, and what limits them; for two threads compared with the measured time.
-void predict_threads(Session& session, const CholeskyAnalysis& analysis, const bench::System& system, double measured,
-                     const std::string& where) {
+void predict_threads(Session& session, const detail::CholeskyAnalysis& analysis, const bench::System& system,
+                     double measured, const std::string& where) {
   const int timed = timed_threads(analysis);
   const std::vector<bench::FrontTime> times = bench::time_fronts(analysis, system.lower, timed);
   const double one = bench::predict(analysis, times, 1).seconds;
@@ -100,7 +100,7 @@ void predict_threads(Session& session, const CholeskyAnalysis& analysis, const b
 
 /// Operations, entries and time per level of the tree. By theory, in three dimensions each level of bisections has half
 /// of the operations of the one above it and 0.79 of its entries.
-void describe_levels(Session& session, const CholeskyAnalysis& analysis, const std::string& where) {
+void describe_levels(Session& session, const detail::CholeskyAnalysis& analysis, const std::string& where) {
   const auto& fronts = analysis.tree().fronts;
   std::vector<int> depth(static_cast<std::size_t>(fronts.size()), 0);
   std::vector<double> flops, entries;
@@ -122,7 +122,7 @@ void describe_levels(Session& session, const CholeskyAnalysis& analysis, const s
 
 /// Growth from the body before, as an exponent of the number of elements. Nested dissection in three dimensions: 2 for
 /// operations, 4/3 for entries.
-void describe_growth(Session& session, const bench::SupportedBody& body, const CholeskyAnalysis& analysis,
+void describe_growth(Session& session, const bench::SupportedBody& body, const detail::CholeskyAnalysis& analysis,
                      const std::string& where) {
   struct Size {
     double elements, flops, entries;
@@ -141,7 +141,7 @@ void describe_growth(Session& session, const bench::SupportedBody& body, const C
 }
 
 void compare_with_eigen(Session& session, const bench::System& system, double two_threads, const std::string& where) {
-  using Solver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>;
+  using Solver = Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower>;
   constexpr Index soon = 15'000, long_run = 70'000;  // dofs: seconds and a minute
   const std::string what = "two threads / Eigen's SimplicialLDLT, one thread" + where;
   if (system.lower.rows() > (session.long_run ? long_run : soon))
@@ -163,7 +163,7 @@ void compare_with_eigen(Session& session, const bench::System& system, double tw
 
 void factorise(Session& session, const bench::SupportedBody& body, const std::string& where) {
   const bench::System system(body);
-  const CholeskyAnalysis analysis(system.lower, system.layout);
+  const detail::CholeskyAnalysis analysis(system.lower, system.layout);
   const VectorX b = bench::random_matrix(system.lower.rows(), 1);
   std::array<VectorX, 2> x{VectorX(b.size()), VectorX(b.size())};
   SparseCholesky solver;

@@ -42,7 +42,7 @@ class TimedTeam final : public detail::FrontTeam {
 /// One thread per running task; the others help the first one whose present part is shared.
 class Simulation {
  public:
-  Simulation(const CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads)
+  Simulation(const detail::CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads)
       : division_(detail::divide_fronts(analysis.tree(), analysis.front_count())),
         times_(times),
         threads_(threads),
@@ -153,7 +153,7 @@ class Simulation {
 };
 
 /// One factorisation in this thread.
-std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseLower& lower) {
+std::vector<FrontTime> time_copy(const detail::CholeskyAnalysis& analysis, const detail::SparseLower& lower) {
   constexpr double shared_flops = 3e7;  // as in ParallelFronts
   const detail::FrontTree& tree = analysis.tree();
   detail::BigArray factor(tree.factor_size + 64), updates(tree.workspace_size + 64);
@@ -175,10 +175,11 @@ std::vector<FrontTime> time_copy(const CholeskyAnalysis& analysis, const SparseL
 
 }  // namespace
 
-std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const SparseLower& lower, int threads) {
+std::vector<FrontTime> time_fronts(const detail::CholeskyAnalysis& analysis, const detail::SparseLower& lower,
+                                   int threads) {
   std::vector<std::vector<FrontTime>> of_thread(static_cast<std::size_t>(threads));
-  StartedThreads(threads).run(threads,
-                              [&](int t) { of_thread[static_cast<std::size_t>(t)] = time_copy(analysis, lower); });
+  detail::StartedThreads(threads).run(
+      threads, [&](int t) { of_thread[static_cast<std::size_t>(t)] = time_copy(analysis, lower); });
   std::vector<FrontTime> mean(of_thread.front().size());
   for (const std::vector<FrontTime>& times : of_thread)
     for (std::size_t f = 0; f < mean.size(); ++f) {
@@ -189,7 +190,7 @@ std::vector<FrontTime> time_fronts(const CholeskyAnalysis& analysis, const Spars
   return mean;
 }
 
-Predicted predict(const CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads) {
+Predicted predict(const detail::CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads) {
   return Simulation(analysis, times, threads).run();
 }
 

@@ -22,10 +22,10 @@ struct Predicted {
 
 /// Eliminates every front in one thread and times it, while `threads` - 1 others do the same with a copy of their own:
 /// they share caches and memory as the threads of one factorisation do. Means of the threads.
-std::vector<FrontTime> time_fronts(const palpate::CholeskyAnalysis& analysis, const palpate::SparseLower& lower,
-                                   int threads);
+std::vector<FrontTime> time_fronts(const palpate::detail::CholeskyAnalysis& analysis,
+                                   const palpate::detail::SparseLower& lower, int threads);
 
 /// Repeats the decisions of ParallelFronts with these times: first ready task first, idle threads share large fronts.
-Predicted predict(const palpate::CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads);
+Predicted predict(const palpate::detail::CholeskyAnalysis& analysis, const std::vector<FrontTime>& times, int threads);
 
 }  // namespace bench

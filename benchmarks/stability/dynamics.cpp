@@ -26,10 +26,10 @@ DynamicProblem block(int cells, int steps, double young, double nu) {
 
 /// Stable time step 2 / omega_max [s] of the block at rest, by a dense eigenvalue problem.
 double stable_step(const DynamicProblem& p) {
-  const DeformableBody body = make_deformable_body(neo_hookean(p), p.scene);
-  BlockMatrix k = make_stiffness(body.pattern, {});
+  const detail::DeformableBody body = detail::make_deformable_body(neo_hookean(p), p.scene);
+  BlockMatrix k = detail::make_stiffness(body.pattern, {});
   body.elastic->tangent(VectorX::Zero(body.load.size()), k);
-  MatrixX dense = MatrixX(free_matrix(k, body.conditions));
+  MatrixX dense = MatrixX(detail::free_matrix(k, body.conditions));
   for (Index i = 0; i < dense.rows(); ++i)
     for (Index j = 0; j <= i; ++j) {
       const auto mass = [&](Index f) {

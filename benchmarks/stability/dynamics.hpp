@@ -32,8 +32,8 @@ struct Moved {
 /// below.
 class EnergyWatch {
  public:
-  EnergyWatch(DeformableBody body) : body_(std::move(body)) {}
-  const DeformableBody& body() const noexcept { return body_; }
+  EnergyWatch(detail::DeformableBody body) : body_(std::move(body)) {}
+  const detail::DeformableBody& body() const noexcept { return body_; }
 
   /// False when the motion is unstable.
   bool holds(const VectorX& u, const VectorX& v) {
@@ -49,7 +49,7 @@ class EnergyWatch {
   double error() const noexcept { return error_; }
 
  private:
-  DeformableBody body_;
+  detail::DeformableBody body_;
   double most_work_ = 0.0, error_ = 0.0;
 };
 

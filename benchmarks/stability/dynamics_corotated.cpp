@@ -6,12 +6,12 @@
 namespace maps {
 namespace {
 
-using Motion = CorotatedMotion<LinearElastic, float>;
+using Motion = detail::CorotatedMotion<LinearElastic, float>;
 
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
   Motion motion(corotational(problem), problem.scene, {.scheme = scheme});
-  return run(problem, EnergyWatch(make_deformable_body(corotational(problem), problem.scene)),
-             ReportedSteps{motion, dt, [](const CorotatedStep& report) { return report.solve.converged; }});
+  return run(problem, EnergyWatch(detail::make_deformable_body(corotational(problem), problem.scene)),
+             ReportedSteps{motion, dt, [](const detail::CorotatedStep& report) { return report.solve.converged; }});
 }
 
 }  // namespace

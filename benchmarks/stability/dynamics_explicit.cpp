@@ -11,7 +11,7 @@ namespace {
 
 template <class SchemeOf>
 struct ExplicitStep {
-  ExplicitMotion<BatchedTetrahedra<NeoHookean>, SchemeOf>& motion;
+  ExplicitMotion<detail::BatchedTetrahedra<NeoHookean>, SchemeOf>& motion;
   double dt;
 
   bool operator()(std::string& remark) {
@@ -26,10 +26,10 @@ struct ExplicitStep {
 template <class SchemeOf>
 Moved move(const DynamicProblem& problem, double dt) {
   const auto body = neo_hookean(problem);
-  EnergyWatch watch(make_deformable_body(neo_hookean(problem), problem.scene));
-  ExplicitMotion<BatchedTetrahedra<NeoHookean>, SchemeOf> motion(BatchedTetrahedra<NeoHookean>(body),
-                                                                 watch.body().lumped, watch.body().conditions.free_dofs,
-                                                                 element_frequency_bound(body.rest));
+  EnergyWatch watch(detail::make_deformable_body(neo_hookean(problem), problem.scene));
+  ExplicitMotion<detail::BatchedTetrahedra<NeoHookean>, SchemeOf> motion(
+      detail::BatchedTetrahedra<NeoHookean>(body), watch.body().lumped, watch.body().conditions.free_dofs,
+      detail::element_frequency_bound(body.rest));
   motion.load() = watch.body().load;
   return run(problem, std::move(watch), ExplicitStep<SchemeOf>{motion, dt});
 }

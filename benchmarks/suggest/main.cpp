@@ -26,7 +26,7 @@ using namespace tradeoff;
 constexpr double most_excess = 1.5;  // of the error of the suggestion
 
 struct Options {
-  SuggestBudget budget;
+  detail::SuggestBudget budget;
   std::string only;
 };
 
@@ -90,7 +90,7 @@ std::vector<PressScene> over_three_points(const PressScene& press) {
 
 /// A row for a composition that `suggest` considered.
 template <class E>
-Entry entry_of(const Bench& bench, const SuggestedModel& m) {
+Entry entry_of(const Bench& bench, const detail::SuggestedModel& m) {
   using Contender = LinearContender<E, Condensed<SelectiveInverse>>;
   Entry entry = linear_entry<E, Condensed<SelectiveInverse>>(bench, m.element, "Condensed<SelectiveInverse>", "given",
                                                              near_group);
@@ -106,7 +106,7 @@ Entry entry_of(const Bench& bench, const SuggestedModel& m) {
   return entry;
 }
 
-Entry entry_for(const Bench& bench, const SuggestedModel& m) {
+Entry entry_for(const Bench& bench, const detail::SuggestedModel& m) {
   return m.element == "Tet4"    ? entry_of<Tet4>(bench, m)
          : m.element == "Tet10" ? entry_of<Tet10>(bench, m)
                                 : entry_of<Smoothed<Tet4>>(bench, m);
@@ -118,7 +118,7 @@ Entry near_entry(const Bench& bench, const std::string& element) {
                                                       near_group);
 }
 
-void print(const Row& row, const std::string& remark, const SuggestedModel& m = {}) {
+void print(const Row& row, const std::string& remark, const detail::SuggestedModel& m = {}) {
   std::printf("  %-60s %7.2f %9.1f %7.2f", (row.element + ", " + row.mesh).c_str(), 100.0 * row.force_small,
               1e6 * row.p99, row.setup);
   if (m.measured) std::printf(" | %7.2f %7.2f %9.1f %7.2f", 100.0 * m.error, 100.0 * m.largest, 1e6 * m.tick, m.setup);
@@ -127,7 +127,7 @@ void print(const Row& row, const std::string& remark, const SuggestedModel& m = 
 }
 
 /// The row with the least error within the budget; nullptr: none.
-const Row* best_within(const std::vector<Row>& rows, const SuggestBudget& budget) {
+const Row* best_within(const std::vector<Row>& rows, const detail::SuggestBudget& budget) {
   const Row* best = nullptr;
   for (const Row& row : rows)
     if (is_good(row) && row.p99 <= budget.tick_seconds && row.setup <= budget.setup_seconds &&
@@ -160,7 +160,7 @@ Row measure_in(const std::vector<Bench>& benches, double setup_seconds,
 }
 
 /// Whether the advice for one body agrees with the table.
-bool agrees(const std::string& name, const PressScene& press, const SuggestBudget& budget) {
+bool agrees(const std::string& name, const PressScene& press, const detail::SuggestBudget& budget) {
   const Suggestion s = suggest(press.mesh, touched_scene(press), press.materials, budget);
   const std::vector<PressScene> scenes = over_three_points(press);
   PressScene at_all = press;
@@ -179,17 +179,17 @@ bool agrees(const std::string& name, const PressScene& press, const SuggestBudge
       static_cast<long>(bench.reference.nodes), 100.0 * bench.reference.mesh_error_small, "", "measured in the scene",
       "by suggest", "composition", "error %", "p99 us", "setup s", "error %", "largest", "p99 us", "setup s");
   std::vector<Row> rows;
-  for (const SuggestedModel& m : s.candidates) {
+  for (const detail::SuggestedModel& m : s.candidates) {
     rows.push_back(measure_in(benches, budget.setup_seconds, [&m](const Bench& b) { return entry_for(b, m); }));
     print(rows.back(), m.remark, m);
   }
   const auto refined = [&press](const char* element, double parts) {
-    SuggestedModel m;
+    detail::SuggestedModel m;
     m.element = element;
     m.edge = press.radius / parts;
     return m;
   };
-  const SuggestedModel tet4 = refined("Tet4", 3.0);
+  const detail::SuggestedModel tet4 = refined("Tet4", 3.0);
   rows.push_back(measure_in(benches, budget.setup_seconds, [&tet4](const Bench& b) { return entry_for(b, tet4); }));
   print(rows.back(), "not a candidate");
   const std::function<Entry(const Bench&)> at_the_points[] = {

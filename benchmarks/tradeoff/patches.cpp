@@ -145,7 +145,7 @@ Patches choose_patches(const Mesh<Tet4>& mesh, const std::vector<BoundaryFace>& 
   if (constrained.empty() || touched.empty()) {
     const auto fixed = nodes(p.constrained);
     std::vector<NodeId> free;
-    for (const BoundaryFace& f : resolve_faces(mesh, boundary, selection_of(p.touched, mesh)))
+    for (const BoundaryFace& f : detail::resolve_faces(mesh, boundary, selection_of(p.touched, mesh)))
       std::ranges::copy_if(f.nodes, std::back_inserter(free),
                            [&](NodeId i) { return !std::ranges::binary_search(fixed, i); });
     if (free.empty())

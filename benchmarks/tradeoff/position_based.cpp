@@ -24,9 +24,9 @@ struct PositionBased {
   std::vector<Element> elements;
 
   PositionBased(const Bench& bench, const Mesh<Tet4>& mesh) : particles(bench, mesh) {
-    const auto materials = materials_by_region(mesh, bench.scene.materials);
+    const auto materials = detail::materials_by_region(mesh, bench.scene.materials);
     for (Index e = 0; e < mesh.element_count(); ++e) {
-      const auto g = constant_geometry<Tet4>(mesh, e);
+      const auto g = detail::constant_geometry<Tet4>(mesh, e);
       const LinearElastic& material = materials[static_cast<std::size_t>(mesh.region(e))];
       Element element{
           {}, g.gradient, g.volume, material.shear_modulus(), material.lame_lambda() + material.shear_modulus()};

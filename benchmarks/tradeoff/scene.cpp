@@ -137,7 +137,7 @@ PressScene make_scene(Mesh<Tet4> mesh, const Patches& patches, double radius, co
   scene.remark = patches.remark;
   const Selection constrained = selection_of(patches.constrained, scene.mesh),
                   touched = selection_of(patches.touched, scene.mesh);
-  const auto wide = resolve_faces(
+  const auto wide = detail::resolve_faces(
       scene.mesh, boundary, patches.constrained == patches.touched ? Selection(std::string(surface_group)) : touched);
   const auto touched_nodes = resolve_nodes(scene.mesh, boundary, touched);
   const auto constrained_nodes = resolve_nodes(scene.mesh, boundary, constrained);

@@ -23,7 +23,7 @@ RegionMaterials<Material> large_strain_materials(const RegionMaterials<LinearEla
 /// The mesh converted for element E, as a mesh of E.
 template <Element E>
 Mesh<E> mesh_of(const Mesh<Tet4>& mesh) {
-  if constexpr (HasSmoothedStrain<E>)
+  if constexpr (detail::HasSmoothedStrain<E>)
     return copy_mesh<E>(mesh);
   else
     return mesh_for<E>(mesh);
@@ -98,14 +98,14 @@ class SoftContender : public Contender {
     if constexpr (requires { parameters_.large_strain_within; })
       if (parameters_.large_strain_within < infinity) {
         const auto body = make_hyperelastic_body(mesh_, materials_);
-        const BodyParts parts =
-            divide_body(mesh_ref(body.rest.mesh), tissue_.touchable_nodes(), parameters_.large_strain_within);
-        const auto far = assemble_stiffness<E>(part_of(body.rest, parts.far), SetupLimits{});
+        const detail::BodyParts parts =
+            detail::divide_body(mesh_ref(body.rest.mesh), tissue_.touchable_nodes(), parameters_.large_strain_within);
+        const auto far = assemble_stiffness<E>(detail::part_of(body.rest, parts.far), SetupLimits{});
         VectorX near_u(3 * static_cast<Index>(parts.near.nodes.size())), near_f(near_u.size()), far_u(far.size()),
             far_f(far.size());
         parts.near.gather(u, near_u);
         parts.far.gather(u, far_u);
-        palpate::detail::make_energy_forces<double>(part_of(body, parts.near), SetupLimits{})
+        palpate::detail::make_energy_forces<double>(detail::part_of(body, parts.near), SetupLimits{})
             ->evaluate(near_u, near_f, report);
         far.apply(far_u, far_f);
         f.setZero();
@@ -117,7 +117,7 @@ class SoftContender : public Contender {
     exact().evaluate(u, f, report);
     return f;
   }
-  EnergyForces& exact() {
+  detail::EnergyForces& exact() {
     if (!exact_)
       exact_ = palpate::detail::make_energy_forces<double>(make_hyperelastic_body(mesh_, materials_), SetupLimits{});
     return *exact_;
@@ -134,7 +134,7 @@ class SoftContender : public Contender {
   Tissue tissue_;
   EssentialConditions conditions_;
   RenderedTissue<Tissue> rendered_;
-  std::unique_ptr<EnergyForces> exact_;
+  std::unique_ptr<detail::EnergyForces> exact_;
 };
 
 /// An entry of a moving model; `paste` is its C++ code.

@@ -20,10 +20,10 @@ struct MassSpring {
   std::vector<Spring> springs;
 
   MassSpring(const Bench& bench, const Mesh<Tet4>& mesh, double factor = 1.0) : particles(bench, mesh) {
-    const auto materials = materials_by_region(mesh, bench.scene.materials);
+    const auto materials = detail::materials_by_region(mesh, bench.scene.materials);
     std::map<std::pair<NodeId, NodeId>, double> stiffness;
     for (Index e = 0; e < mesh.element_count(); ++e) {
-      const double volume = constant_geometry<Tet4>(mesh, e).volume,
+      const double volume = detail::constant_geometry<Tet4>(mesh, e).volume,
                    modulus = materials[static_cast<std::size_t>(mesh.region(e))].youngs_modulus;
       for (int i = 0; i < 4; ++i)
         for (int j = i + 1; j < 4; ++j)

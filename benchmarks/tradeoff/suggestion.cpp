@@ -13,7 +13,7 @@ std::string suggestion(const PressScene& press, double budget) {
   const Suggestion s = suggest(press.mesh, scene, press.materials, {.tick_seconds = budget});
   std::ostringstream out;
   out << "suggest, in " << three_digits(s.seconds) << " s; errors at a depth of an eighth of the radius\n";
-  for (const SuggestedModel& m : s.candidates) {
+  for (const detail::SuggestedModel& m : s.candidates) {
     out << "  " << m.name();
     if (m.measured)
       out << ": " << percent(m.error) << " % error, p99 " << three_digits(1e6 * m.tick) << " us, set-up "

@@ -42,7 +42,7 @@ inline Mesh<Tet4> jittered(Mesh<Tet4> mesh, double amount, const Vector3& size) 
 /// Conditions of a scene on a whole body.
 template <Element E>
 EssentialConditions conditions_of(const Mesh<E>& mesh, const Scene& scene) {
-  return resolve_essential(mesh, extract_boundary<E>(mesh), scene);
+  return detail::resolve_essential(mesh, extract_boundary<E>(mesh), scene);
 }
 
 }  // namespace test

@@ -15,7 +15,7 @@ namespace {
 const Body<Tet4> cubes = body_of(two_cubes(), {reference_material});
 
 VectorX load_of(const Scene& scene, const Body<Tet4>& body = cubes) {
-  return applied_load(body, extract_boundary<Tet4>(body.mesh), scene);
+  return detail::applied_load(body, extract_boundary<Tet4>(body.mesh), scene);
 }
 Vector3 total(const VectorX& f) {
   Vector3 sum = Vector3::Zero();
@@ -91,7 +91,7 @@ TEST_CASE("conditions on missing groups, nodes and faces are refused", "[assembl
   SECTION("regions") {
     CHECK_REFUSED(SetupErrorKind::unknown_group, load_of(Scene().body_load("cube_c", {1, 0, 0})));
     CHECK_REFUSED(SetupErrorKind::unknown_group,
-                  initial_strains_by_region(cubes.mesh, Scene().initial_strain("cube_c", Vector6::Ones())));
+                  detail::initial_strains_by_region(cubes.mesh, Scene().initial_strain("cube_c", Vector6::Ones())));
   }
   SECTION("NaN and infinity") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -152,14 +152,14 @@ TEST_CASE("nodal masses sum to density times volume", "[assembly][mass]") {
 
 TEST_CASE("initial strain: sums, regions, energy", "[assembly][strain]") {
   Body<Tet4> body = cubes;
-  CHECK(initial_strain_load(body).isZero(0.0));
+  CHECK(detail::initial_strain_load(body).isZero(0.0));
   Vector6 strain;
   strain << 1e-3, -2e-3, 5e-4, 1e-4, 2e-4, -3e-4;
-  body.initial_strain =
-      initial_strains_by_region(body.mesh, Scene().initial_strain("cube_b", strain).initial_strain(everywhere, strain));
+  body.initial_strain = detail::initial_strains_by_region(
+      body.mesh, Scene().initial_strain("cube_b", strain).initial_strain(everywhere, strain));
   CHECK(body.initial_strain[0] == strain);
   CHECK(body.initial_strain[1] == 2.0 * strain);
-  const VectorX f = initial_strain_load(body);
+  const VectorX f = detail::initial_strain_load(body);
   CHECK(largest(total(f)) <= 1e-15);
   CHECK(largest(total_moment(f)) <= 1e-15);
   const Matrix6 d = reference_material.elasticity();
@@ -171,7 +171,7 @@ TEST_CASE("one material per region", "[assembly][material]") {
   const Mesh<Tet4> mesh = two_cubes();
   using Materials = RegionMaterials<LinearElastic>;
   const auto young = [&](const Materials& m) {
-    const auto all = materials_by_region(mesh, m);
+    const auto all = detail::materials_by_region(mesh, m);
     return std::array{all.at(0).youngs_modulus, all.at(1).youngs_modulus};
   };
   const LinearElastic soft{1.0, 0.3, 0.0}, hard{2.0, 0.3, 0.0};

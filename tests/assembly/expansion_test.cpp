@@ -16,10 +16,10 @@ namespace {
 template <Element E>
 VectorX solve(Body<E>& body, const Scene& scene) {
   const EssentialConditions conditions = conditions_of(body.mesh, scene);
-  body.initial_strain = initial_strains_by_region(body.mesh, scene);
+  body.initial_strain = detail::initial_strains_by_region(body.mesh, scene);
   VectorX load(conditions.free_count()), answer(load.size()), u(conditions.dof_count());
-  conditions.gather(initial_strain_load(body), load);
-  SparseCholesky(free_matrix(assemble_stiffness<E>(body, {}), conditions), {}).solve_into(load, answer);
+  conditions.gather(detail::initial_strain_load(body), load);
+  SparseCholesky(detail::free_matrix(assemble_stiffness<E>(body, {}), conditions), {}).solve_into(load, answer);
   conditions.scatter(answer, u);
   return u;
 }
@@ -83,5 +83,5 @@ TEST_CASE("invalid expansions are refused", "[mesh][expansion]") {
   CHECK_REFUSED(SetupErrorKind::non_finite, scene.thermal_strain(everywhere, 1e-4, infinity));
   CHECK(scene.initial_strains().empty());
   scene.expand("nowhere", 0.01);
-  CHECK_REFUSED(SetupErrorKind::unknown_group, initial_strains_by_region(two_cubes(), scene));
+  CHECK_REFUSED(SetupErrorKind::unknown_group, detail::initial_strains_by_region(two_cubes(), scene));
 }

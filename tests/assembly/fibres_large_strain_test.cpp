@@ -71,7 +71,7 @@ TEST_CASE("with fibres, force and tangent are derivatives of energy and force", 
   body.force(u, f);
   const double slope = (body.energy(u + h * d) - body.energy(u - h * d)) / (2.0 * h);
   CHECK(std::abs(f.dot(d) - slope) <= 1e-6 * f.norm() * d.norm());
-  BlockMatrix k(block_pattern(body.mesh()));
+  BlockMatrix k(detail::block_pattern(body.mesh()));
   body.tangent(u, k);
   k.apply(d, kd);
   body.force(u + h * d, more);
@@ -101,10 +101,10 @@ TEST_CASE("mesh fibres override the material's own; equal ones give the same res
 TEST_CASE("unsupported and invalid fibres are refused", "[assembly][large_strain][fibres][extreme]") {
   Mesh<Tet4> mesh = block_of_fibres<Tet4>(false);
   const auto body = make_hyperelastic_body(mesh, std::vector<FibredGel>{fibred_gel});
-  CHECK_REFUSED(SetupErrorKind::unsupported, BatchedTetrahedra<FibredGel>{body});
+  CHECK_REFUSED(SetupErrorKind::unsupported, detail::BatchedTetrahedra<FibredGel>{body});
   // a material without a direction ignores fibres
-  CHECK(BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base})).size() ==
-        3 * mesh.node_count());
+  CHECK(detail::BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base}))
+            .size() == 3 * mesh.node_count());
   mesh.fibres[3] *= 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_argument, pulled_along(mesh));
   mesh.fibres.pop_back();

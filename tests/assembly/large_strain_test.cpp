@@ -75,7 +75,7 @@ TEMPLATE_TEST_CASE("force and tangent are derivatives of the energy", "[assembly
   CHECK(report.smallest_volume_ratio < 1.0);
   const double h = 1e-6;
   CHECK_THAT((body.energy(u + h * d) - body.energy(u - h * d)) / (2.0 * h), WithinRel(f.dot(d), 1e-7));
-  BlockMatrix k(block_pattern(body.mesh()));
+  BlockMatrix k(detail::block_pattern(body.mesh()));
   body.tangent(u, k);
   body.tangent(u, k);  // overwrites
   k.apply(d, kd);
@@ -92,7 +92,8 @@ TEMPLATE_TEST_CASE("a homogeneous deformation equals the closed form", "[assembl
   const VectorX u = affine(body.mesh(), a, {0.1, -2.0, 3.0});
   double volume = 0.0;
   for (Index e = 0; e < body.mesh().element_count(); ++e)
-    for (const auto& p : integration_points<TestType>(element_nodes<TestType>(body.mesh(), e))) volume += p.volume;
+    for (const auto& p : detail::integration_points<TestType>(element_nodes<TestType>(body.mesh(), e)))
+      volume += p.volume;
   CHECK_THAT(body.energy(u), WithinRel(volume * gel.energy(tensor3<double>(a)), 1e-12));
   VectorX f(u.size());
   const DeformationReport report = body.force(u, f);
@@ -142,7 +143,7 @@ TEMPLATE_TEST_CASE("at rest the tangent equals the small-strain stiffness", "[as
                    Hex8, Hex20) {
   const auto body = elastic<TestType>();
   const VectorX d = random_vector(body.size(), 1.0, 4);
-  BlockMatrix k(block_pattern(body.mesh()));
+  BlockMatrix k(detail::block_pattern(body.mesh()));
   body.tangent(VectorX::Zero(d.size()), k);
   VectorX a(d.size()), b(d.size());
   k.apply(d, a);

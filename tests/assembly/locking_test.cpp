@@ -27,12 +27,12 @@ double tip_deflection(const Mesh<E>& mesh, double nu) {
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
   const Body<E> body = body_of(mesh, {{1.0, nu, 1.0}});
   const auto boundary = extract_boundary<E>(mesh);
-  const EssentialConditions conditions = resolve_essential(mesh, boundary, scene);
-  const VectorX load = applied_load(body, boundary, scene);
+  const EssentialConditions conditions = detail::resolve_essential(mesh, boundary, scene);
+  const VectorX load = detail::applied_load(body, boundary, scene);
   VectorX free(conditions.free_count());
   conditions.gather(load, free);
   const BlockMatrix k = assemble_stiffness<E>(body, {});
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver(free_matrix(k, conditions));
+  const Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower> solver(detail::free_matrix(k, conditions));
   REQUIRE(solver.info() == Eigen::Success);
   return free.dot(solver.solve(free)) / 1e-3;  // mean over the end, weighted like the load
 }
@@ -49,7 +49,7 @@ TEST_CASE("MeanDilatation passes the stiffness law suite", "[assembly][locking]"
     Body<Cured> body = body_of(mesh, {liver});
     if (!isotropic) body.elasticity.front() = orthotropic();
     const BlockMatrix stored = assemble_stiffness<Cured>(body, {});
-    const MatrixFreeStiffness<Cured> free(body, {});
+    const detail::MatrixFreeStiffness<Cured> free(body, {});
     CHECK(testing::describe(testing::stiffness_laws(body, stored, 1)) == "");
     CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
   }
@@ -62,28 +62,30 @@ TEST_CASE("MeanDilatation: one volume change per element, and the energy equals 
     x.row(a) += random.vector<3>(-0.2, 0.2).transpose();
     u.row(a) = random.vector<3>(-0.1, 0.1).transpose();
   }
-  const auto points = integration_points<Cured>(x);
-  const auto plain = integration_points<Hex8>(x);
+  const auto points = detail::integration_points<Cured>(x);
+  const auto plain = detail::integration_points<Hex8>(x);
   double changed = 0.0, volume = 0.0, energy = 0.0;
   ElementNodes<Cured> force = ElementNodes<Cured>::Zero();
   const Matrix6 d = orthotropic();
   for (std::size_t q = 0; q < points.size(); ++q) {
-    const Vector6 e = strain_at<Cured>(points[q], u);
-    CHECK_THAT(e.head<3>().sum(), Catch::Matchers::WithinAbs(strain_at<Cured>(points[0], u).head<3>().sum(), 1e-15));
-    CHECK(largest(e.tail<3>() - strain_at<Hex8>(plain[q], u).tail<3>()) == 0.0);
-    changed += plain[q].volume * strain_at<Hex8>(plain[q], u).head<3>().sum();
+    const Vector6 e = detail::strain_at<Cured>(points[q], u);
+    CHECK_THAT(e.head<3>().sum(),
+               Catch::Matchers::WithinAbs(detail::strain_at<Cured>(points[0], u).head<3>().sum(), 1e-15));
+    CHECK(largest(e.tail<3>() - detail::strain_at<Hex8>(plain[q], u).tail<3>()) == 0.0);
+    changed += plain[q].volume * detail::strain_at<Hex8>(plain[q], u).head<3>().sum();
     volume += points[q].volume;
     energy += 0.5 * points[q].volume * e.dot(d * e);
-    force += force_of_stress<Cured>(points[q], d * e);
+    force += detail::force_of_stress<Cured>(points[q], d * e);
   }
-  CHECK_THAT(strain_at<Cured>(points[0], u).head<3>().sum(), Catch::Matchers::WithinRel(changed / volume, 1e-12));
+  CHECK_THAT(detail::strain_at<Cured>(points[0], u).head<3>().sum(),
+             Catch::Matchers::WithinRel(changed / volume, 1e-12));
   CHECK_THAT(0.5 * force.cwiseProduct(u).sum(), Catch::Matchers::WithinRel(energy, 1e-12));
   Eigen::Matrix<double, 24, 1> v, f;
   for (int a = 0; a < 8; ++a) {
     v.segment<3>(3 * a) = u.row(a).transpose();
     f.segment<3>(3 * a) = force.row(a).transpose();
   }
-  CHECK(largest(element_stiffness<Cured>(x, d) * v - f) <= 1e-13 * largest(f));
+  CHECK(largest(detail::element_stiffness<Cured>(x, d) * v - f) <= 1e-13 * largest(f));
 }
 
 TEST_CASE("near incompressibility Hex8 locks, MeanDilatation<Hex8> and quadratic elements do not",

@@ -25,7 +25,8 @@ Mesh<E> box(const Vector3& size, std::array<int, 3> cells) {
 
 /// v M v for the velocity field v(x) at every node.
 template <Element E>
-double twice_kinetic_energy(const Mesh<E>& mesh, const MassMatrix& m, const std::function<Vector3(const Vector3&)>& v) {
+double twice_kinetic_energy(const Mesh<E>& mesh, const detail::MassMatrix& m,
+                            const std::function<Vector3(const Vector3&)>& v) {
   VectorX nodal(m.size()), moved(m.size());
   for (Index i = 0; i < mesh.node_count(); ++i) nodal.segment<3>(3 * i) = v(mesh.position(i));
   m.apply(nodal, moved);
@@ -40,7 +41,7 @@ TEMPLATE_TEST_CASE("total mass and inertia of a block", "[assembly][mass]", Tet4
   Mesh<E> mesh = box<E>(size, {3, 2, 2});
   for (Vector3& x : mesh.positions) x += origin;
   const Body<E> body = body_of(std::move(mesh), {liver});
-  const MassMatrix m = assemble_mass(body);
+  const detail::MassMatrix m = assemble_mass(body);
   const double mass = liver.density * size.prod();
 
   const Vector3 along(0.3, -0.4, 1.2);  // norm 1.3
@@ -65,7 +66,7 @@ TEST_CASE("the mass of two cubes equals that of another code", "[assembly][mass]
     WARN("skipped: no reference in the tree");
     return;
   }
-  const MassMatrix m = assemble_mass(body_of(two_cubes(), {reference_material}));
+  const detail::MassMatrix m = assemble_mass(body_of(two_cubes(), {reference_material}));
   REQUIRE(reference.rows() == m.size());
   MatrixX dense(m.size(), m.size());
   VectorX column(m.size());
@@ -94,7 +95,7 @@ TEMPLATE_TEST_CASE("mass does not depend on the order of nodes and elements", "[
   for (std::size_t i = 0; i < n; ++i) map[i] = static_cast<NodeId>((7 * i + 3) % n);
   REQUIRE(n % 7 != 0);
   Body<E> other = body;
-  renumber_nodes(other.mesh, map);
+  detail::renumber_nodes(other.mesh, map);
   std::ranges::reverse(other.mesh.elements);
   const VectorX lumped = lumped_mass(body), other_lumped = lumped_mass(other);
   VectorX v(3 * body.mesh.node_count()), other_v = v, mv = v, other_mv = v;
@@ -116,8 +117,8 @@ TEST_CASE("the mass of the free dofs is part of the full mass matrix", "[assembl
   Scene scene;
   scene.prescribe("x0", {0.0, std::nullopt, 0.0});
   const EssentialConditions conditions = conditions_of(body.mesh, scene);
-  const MassMatrix m = assemble_mass(body);
-  const SparseMatrix lower = free_matrix(m, conditions);
+  const detail::MassMatrix m = assemble_mass(body);
+  const detail::SparseMatrix lower = detail::free_matrix(m, conditions);
   VectorX free(conditions.free_count()), full(m.size()), moved(m.size()), expected(free.size());
   for (Index i = 0; i < free.size(); ++i) free[i] = std::cos(static_cast<double>(i));
   conditions.scatter(free, full);

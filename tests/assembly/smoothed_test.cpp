@@ -51,18 +51,18 @@ TEST_CASE("Smoothed<Tet4> passes the stiffness law suite, stored and matrix-free
   if (materials == 3) body.elasticity = {orthotropic(), 3.0 * orthotropic()};
   if (materials == 4) mix_materials(body);
   const BlockMatrix stored = assemble_stiffness<Averaged>(body, {});
-  const MatrixFreeStiffness<Averaged> free(body, {});
+  const detail::MatrixFreeStiffness<Averaged> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored)) == "");
   CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
 }
 
 TEST_CASE("Smoothed<Tet4>: domains fill the body, and their gradients sum to zero", "[assembly][smoothed]") {
   const Mesh<Averaged> mesh = box();
-  const StrainDomains<Averaged> domains(mesh);
+  const detail::StrainDomains<Averaged> domains(mesh);
   double deviatoric = 0.0, volumetric = 0.0;
   for (Index d = 0; d < domains.size(); ++d) {
-    const StrainDomain domain = domains[d];
-    (domain.part == StrainPart::deviatoric ? deviatoric : volumetric) += domain.volume;
+    const detail::StrainDomain domain = domains[d];
+    (domain.part == detail::StrainPart::deviatoric ? deviatoric : volumetric) += domain.volume;
     Vector3 sum = Vector3::Zero();
     Matrix3 moment = Matrix3::Zero();
     for (std::size_t a = 0; a < domain.nodes.size(); ++a) {
@@ -86,23 +86,23 @@ TEST_CASE("Smoothed<Tet4>: energy, forces and stress are consistent", "[assembly
   const VectorX u = 0.1 * random_displacement(body.mesh);
   VectorX force(u.size());
   assemble_stiffness<Averaged>(body, {}).apply(u, force);
-  const VectorX load = initial_strain_load(body);
+  const VectorX load = detail::initial_strain_load(body);
 
   // 1/2 u K u - u f_0 + 1/2 eps_0 D eps_0 V
   double at_rest = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const Vector6& e0 = body.initial_strain[body.region_of(e)];
-    at_rest +=
-        0.5 * e0.dot(body.elasticity_of(e) * e0) * shape_volumes<Averaged>(element_nodes<Averaged>(body.mesh, e)).sum();
+    at_rest += 0.5 * e0.dot(body.elasticity_of(e) * e0) *
+               detail::shape_volumes<Averaged>(element_nodes<Averaged>(body.mesh, e)).sum();
   }
   CHECK_THAT(strain_energy(body, u), Catch::Matchers::WithinRel(0.5 * u.dot(force) - u.dot(load) + at_rest, 1e-12));
 
   // the stress of every element gives the same forces as K
-  const auto stress = smoothed_state(body, u).stress;
+  const auto stress = detail::smoothed_state(body, u).stress;
   VectorX made = VectorX::Zero(u.size());
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
-    const auto point = integration_points<Tet4>(element_nodes<Tet4>(body.mesh, e))[0];
-    const auto f = force_of_stress<Tet4>(point, stress.col(e));
+    const auto point = detail::integration_points<Tet4>(element_nodes<Tet4>(body.mesh, e))[0];
+    const auto f = detail::force_of_stress<Tet4>(point, stress.col(e));
     for (int a = 0; a < 4; ++a) made.segment<3>(3 * Index{body.mesh.element_node(e, a)}) += f.row(a).transpose();
   }
   CHECK(largest(made - (force - load)) <= 1e-13 * largest(force));
@@ -118,10 +118,10 @@ TEST_CASE("Smoothed<Tet4>: a uniform initial strain is cancelled by its displace
   const VectorX u = testing::affine_displacement(body.mesh, Vector3(1, 2, 3), gradient);
   VectorX force(u.size());
   assemble_stiffness<Averaged>(body, {}).apply(u, force);
-  const VectorX load = initial_strain_load(body);
+  const VectorX load = detail::initial_strain_load(body);
   CHECK(largest(force - load) <= 1e-12 * largest(load));
   CHECK(strain_energy(body, u) <= 1e-24 * 2e5);
-  CHECK(largest(smoothed_state(body, u).stress) <= 1e-13 * 2e5);
+  CHECK(largest(detail::smoothed_state(body, u).stress) <= 1e-13 * 2e5);
 }
 
 TEST_CASE("Smoothed<Tet4>: averages stop at the border of a material", "[assembly][smoothed]") {
@@ -138,7 +138,7 @@ TEST_CASE("Smoothed<Tet4>: averages stop at the border of a material", "[assembl
     const double x = body.mesh.position(i)[0];
     if (x > 1e-9 && x < 3.0 - 1e-9) CHECK(force.segment<3>(3 * i).norm() <= 1e-12 * 300.0);
   }
-  const auto stress = smoothed_state(body, u).stress;
+  const auto stress = detail::smoothed_state(body, u).stress;
   for (Index e = 0; e < stress.cols(); ++e) CHECK(std::abs(stress(0, e) - 300.0) <= 1e-10);
 }
 
@@ -150,5 +150,5 @@ TEST_CASE("Smoothed<Tet4> refuses what Tet4 refuses", "[assembly][smoothed][extr
   body.mesh.positions[3][1] = std::numeric_limits<double>::quiet_NaN();
   std::swap(body.mesh.elements[7][0], body.mesh.elements[7][1]);
   CHECK_REFUSED(SetupErrorKind::non_finite, assemble_stiffness<Averaged>(body, {}));
-  CHECK_REFUSED(SetupErrorKind::non_finite, (MatrixFreeStiffness<Averaged>(body, {})));
+  CHECK_REFUSED(SetupErrorKind::non_finite, (detail::MatrixFreeStiffness<Averaged>(body, {})));
 }

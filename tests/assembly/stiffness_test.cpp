@@ -21,7 +21,7 @@ namespace {
 template <Element E>
 void check_laws(const Body<E>& body, Index pieces = 1) {
   const BlockMatrix stored = assemble_stiffness<E>(body, {});
-  const MatrixFreeStiffness<E> free(body, {});
+  const detail::MatrixFreeStiffness<E> free(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, stored, pieces)) == "");
   CHECK(testing::describe(testing::stiffness_laws(body, free, pieces)) == "");
   CHECK(testing::describe(testing::same_stiffness_laws(stored, free)) == "");
@@ -92,7 +92,8 @@ TEST_CASE("K of the two cubes equals that of another code", "[assembly][oracle]"
   REQUIRE(reference.cols() == 36);
   const Body<Tet4> body = body_of(two_cubes(), {reference_material});
   CHECK(largest(testing::dense_matrix(assemble_stiffness<Tet4>(body, {})) - reference) <= 1e-12 * largest(reference));
-  CHECK(largest(testing::dense_matrix(MatrixFreeStiffness<Tet4>(body, {})) - reference) <= 1e-12 * largest(reference));
+  CHECK(largest(testing::dense_matrix(detail::MatrixFreeStiffness<Tet4>(body, {})) - reference) <=
+        1e-12 * largest(reference));
 }
 
 TEST_CASE("K of a body equals the closed form", "[assembly][closed_form]") {
@@ -104,7 +105,7 @@ TEST_CASE("K of a body equals the closed form", "[assembly][closed_form]") {
 
 TEST_CASE("the pattern contains each pair of neighbours once", "[assembly][pattern]") {
   const Mesh<Tet4> mesh = two_cubes();
-  const BlockPattern pattern = block_pattern(mesh);
+  const detail::BlockPattern pattern = detail::block_pattern(mesh);
   REQUIRE(pattern.rows() == 12);
   for (NodeId i = 0; i < 12; ++i) {
     const auto begin = pattern.column.begin() + pattern.row_start[static_cast<std::size_t>(i)];
@@ -129,13 +130,13 @@ TEST_CASE("free_matrix is the lower half of K without the prescribed dofs", "[as
   scene.fix("fixed").prescribe("load_point", {std::nullopt, 0.1, std::nullopt});
   const EssentialConditions c = conditions_of(body.mesh, scene);
   REQUIRE(c.free_count() == 36 - 12 - 1);
-  const MatrixX all = testing::dense_matrix(k), lower = MatrixX(free_matrix(k, c));
+  const MatrixX all = testing::dense_matrix(k), lower = MatrixX(detail::free_matrix(k, c));
   MatrixX expected = MatrixX::Zero(c.free_count(), c.free_count());
   for (Index i = 0; i < c.free_count(); ++i)
     for (Index j = 0; j <= i; ++j)
       expected(i, j) = all(c.free_dofs[static_cast<std::size_t>(i)], c.free_dofs[static_cast<std::size_t>(j)]);
   CHECK(lower == expected);
-  const FreeStiffness op(k, c);
+  const detail::FreeStiffness op(k, c);
   const MatrixX by_apply = testing::dense_matrix(op);
   CHECK(largest(by_apply - MatrixX(expected.selfadjointView<Eigen::Lower>())) <= 1e-13 * largest(expected));
   VectorX x = VectorX::Ones(op.size()), y(op.size());
@@ -152,7 +153,7 @@ TEST_CASE("an element whose stiffness overflows is refused with its id", "[assem
     CHECK(p.ids == std::vector<std::int64_t>{8});
   };
   check(refusal([&] { assemble_stiffness<Tet4>(body, {}); }));
-  check(refusal([&] { MatrixFreeStiffness<Tet4>(body, {}); }));
+  check(refusal([&] { detail::MatrixFreeStiffness<Tet4>(body, {}); }));
 }
 
 TEST_CASE("assembly by rows gives the same bits on any number of threads", "[assembly][threads]") {
@@ -171,7 +172,7 @@ TEST_CASE("assembly by rows gives the same bits on any number of threads", "[ass
   REQUIRE(body.mesh.node_count() > 2 * 8192);  // more than one group of rows
 
   const BlockMatrix one = assemble_stiffness<Tet4>(body, {});
-  const MatrixFreeStiffness<Tet4> by_elements(body, {});
+  const detail::MatrixFreeStiffness<Tet4> by_elements(body, {});
   VectorX x(one.size()), y(one.size()), expected(one.size());
   for (Index i = 0; i < x.size(); ++i) x[i] = std::sin(static_cast<double>(i));
   one.apply(x, y);
@@ -203,7 +204,7 @@ TEST_CASE("assembly can be cancelled", "[assembly]") {
   SetupLimits limits;
   limits.progress = [](const Progress& p) { return p.stage != "assembly"; };
   CHECK_REFUSED(SetupErrorKind::cancelled, assemble_stiffness<Tet4>(body, limits));
-  CHECK_REFUSED(SetupErrorKind::cancelled, MatrixFreeStiffness<Tet4>(body, limits));
+  CHECK_REFUSED(SetupErrorKind::cancelled, detail::MatrixFreeStiffness<Tet4>(body, limits));
 }
 
 TEST_CASE("an element that is inverted at an integration point is refused", "[assembly][extreme]") {

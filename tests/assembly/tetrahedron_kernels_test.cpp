@@ -33,7 +33,7 @@ struct Block {
   static constexpr int batch_count = 5, row_count = 37;
   static constexpr double lambda = 700.0, mu = 1100.0;
 
-  std::vector<TetrahedronBatch<S, lanes>> batches{static_cast<std::size_t>(batch_count)};
+  std::vector<detail::TetrahedronBatch<S, lanes>> batches{static_cast<std::size_t>(batch_count)};
   std::vector<std::int32_t> nodes;
   std::vector<double> displacement;
 
@@ -42,14 +42,14 @@ struct Block {
     for (std::int32_t r = 0; r < row_count; ++r) nodes.push_back((r * 5 + 3) % row_count);
     for (int i = 0; i < 3 * row_count; ++i) displacement.push_back(random.uniform(-0.3, 0.3));
     for (int b = 0; b < batch_count; ++b) {
-      TetrahedronBatch<S, lanes>& batch = batches[static_cast<std::size_t>(b)];
+      detail::TetrahedronBatch<S, lanes>& batch = batches[static_cast<std::size_t>(b)];
       batch = {};
       for (int lane = 0; lane < lanes; ++lane) {
         for (int a = 0; a < 4; ++a)
           batch.row[a][lane] = static_cast<std::uint16_t>(4 * ((7 * b + 3 * lane + 9 * a) % row_count));
         if (b + 1 == batch_count && lane + 1 == lanes) continue;
-        for (Triple<Lanes<S, lanes>>& g : batch.gradient)
-          for (Lanes<S, lanes>* x : {&g.x, &g.y, &g.z}) x->set(lane, static_cast<S>(random.uniform(-1.0, 1.0)));
+        for (Triple<detail::Lanes<S, lanes>>& g : batch.gradient)
+          for (detail::Lanes<S, lanes>* x : {&g.x, &g.y, &g.z}) x->set(lane, static_cast<S>(random.uniform(-1.0, 1.0)));
         batch.volume.set(lane, static_cast<S>(random.uniform(0.5, 1.0)));
       }
     }
@@ -81,7 +81,7 @@ struct Block {
 
  private:
   void add(int b, int lane, Result& r) const {
-    const TetrahedronBatch<S, lanes>& batch = batches[static_cast<std::size_t>(b)];
+    const detail::TetrahedronBatch<S, lanes>& batch = batches[static_cast<std::size_t>(b)];
     const auto at = static_cast<std::size_t>(lane);
     const auto u = [&](int a, int c) {
       const auto node = static_cast<std::size_t>(nodes[std::size_t{batch.row[a][lane]} / 4]);

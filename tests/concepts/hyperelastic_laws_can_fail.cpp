@@ -35,7 +35,7 @@ template <Break wrong, class Law = NeoHookean>
 struct Wrong : Law {
   template <class S>
   S energy(const Tensor3<S>& f) const noexcept {
-    const S w = Law::energy(f), modulus = S(static_cast<scalar_of<S>>(this->youngs_modulus));
+    const S w = Law::energy(f), modulus = S(static_cast<detail::scalar_of<S>>(this->youngs_modulus));
     if constexpr (wrong == Break::energy_at_rest) return w + S(1e-9f) * modulus;
     if constexpr (wrong == Break::energy_halved) return S(0.5f) * w;
     if constexpr (wrong == Break::turns_with_space) return w + S(1e-6f) * modulus * f(0, 1) * f(0, 1);
@@ -48,8 +48,8 @@ struct Wrong : Law {
   template <class S>
   Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
     Tensor3<S> p = Law::stress(f);
-    const S modulus = S(static_cast<scalar_of<S>>(this->youngs_modulus));
-    constexpr bool one = sizeof(S) == sizeof(scalar_of<S>), single = sizeof(scalar_of<S>) == 4;
+    const S modulus = S(static_cast<detail::scalar_of<S>>(this->youngs_modulus));
+    constexpr bool one = sizeof(S) == sizeof(detail::scalar_of<S>), single = sizeof(detail::scalar_of<S>) == 4;
     const bool off = (wrong == Break::single && one && single) || (wrong == Break::lanes && !one && !single) ||
                      (wrong == Break::single_lanes && !one && single);
     if (off) p.e[5] = S(1.01f) * p.e[5];

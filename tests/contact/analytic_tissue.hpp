@@ -99,12 +99,12 @@ std::vector<Vector3> deformed_surface(const Tissue& tissue, std::span<const Vert
 /// Smallest gap between a sphere at `proxy` (model frame) and any contact point of the deformed surface, including
 /// points that face away from the sphere.
 template <TissueModel Tissue>
-double smallest_gap(const Tissue& tissue, const ContactSamples& samples, std::span<const VertexForce> forces,
+double smallest_gap(const Tissue& tissue, const detail::ContactSamples& samples, std::span<const VertexForce> forces,
                     const Vector3& proxy, double radius) {
   const std::vector<Vector3> x = deformed_surface(tissue, forces);
   double smallest = infinity;
   for (int i = 0; i < samples.count(); ++i) {
-    const ContactSample& s = samples[i];
+    const detail::ContactSample& s = samples[i];
     Vector3 q = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) q += s.weights[a] * x[static_cast<std::size_t>(s.vertices[a])];
     smallest = std::min(smallest, (proxy - q).norm() - radius);

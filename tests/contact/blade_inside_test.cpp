@@ -17,7 +17,7 @@ namespace {
 constexpr double size = 0.02, height = 0.005;  // of a block: size x size x height, its middle above the origin
 
 double length_in_tissue(const ContactSurface& surface, const Vector3& a, const Vector3& b) {
-  return palpate::length_in_tissue(surface, a, b, 1e-3);
+  return palpate::detail::length_in_tissue(surface, a, b, 1e-3);
 }
 
 /// A rigid motion of the block.

@@ -26,7 +26,7 @@ struct Soup {
   double squared_distance(const Vector3& p, int t) const {
     const Triangle& v = triangles[static_cast<std::size_t>(t)];
     const auto at = [&](std::size_t i) { return positions[static_cast<std::size_t>(v[i])]; };
-    const TrianglePoint q = closest_point(p, at(0), at(1), at(2));
+    const detail::TrianglePoint q = detail::closest_point(p, at(0), at(1), at(2));
     return (p - q.weights[0] * at(0) - q.weights[1] * at(1) - q.weights[2] * at(2)).squaredNorm();
   }
   int nearest(const Vector3& p) const {
@@ -47,17 +47,17 @@ struct Soup {
   }
 };
 
-int nearest(const Bvh& bvh, const Soup& soup, const Vector3& p) {
+int nearest(const detail::Bvh& bvh, const Soup& soup, const Vector3& p) {
   return bvh.nearest(p, [&](int t) { return soup.squared_distance(p, t); });
 }
 
-std::vector<int> visited(const Bvh& bvh, const Vector3& p, double radius) {
+std::vector<int> visited(const detail::Bvh& bvh, const Vector3& p, double radius) {
   std::vector<int> all;
   bvh.visit_near(p, radius, [&](int t) { all.push_back(t); });
   return all;
 }
 
-void compare(const Bvh& bvh, const Soup& soup, std::uint64_t seed) {
+void compare(const detail::Bvh& bvh, const Soup& soup, std::uint64_t seed) {
   testing::Random random(seed);
   int wrong_nearest = 0, missed = 0, twice = 0;
   for (int i = 0; i < 300; ++i) {
@@ -81,20 +81,20 @@ TEST_CASE("nearest and near triangles equal those of brute force", "[contact][bv
     for (bool clustered : {false, true}) {
       INFO(count << " triangles" << (clustered ? ", most of them in one place" : ""));
       const Soup soup(count, 21, clustered);
-      compare(Bvh(soup.triangles, soup.positions), soup, 22);
+      compare(detail::Bvh(soup.triangles, soup.positions), soup, 22);
     }
 }
 
 TEST_CASE("after a refit the results are those of the moved triangles", "[contact][bvh]") {
   Soup soup(700, 23);
-  Bvh bvh(soup.triangles, soup.positions);
+  detail::Bvh bvh(soup.triangles, soup.positions);
   testing::Random random(24);
   for (int round = 0; round < 3; ++round) {
     const Matrix3 turn = testing::random_rotation(random);
     for (Vector3& x : soup.positions) x = turn * x + random.vector<3>(-0.3, 0.3);
     bvh.refit(soup.triangles, soup.positions);
     compare(bvh, soup, 25);
-    Box box;
+    detail::Box box;
     for (const Vector3& x : soup.positions) box.include(x);
     CHECK(bvh.bounds().low == box.low);
     CHECK(bvh.bounds().high == box.high);
@@ -106,7 +106,7 @@ TEST_CASE("of equally near triangles the one with the lowest number is chosen", 
   Soup soup = once;
   for (int copy = 0; copy < 3; ++copy)
     soup.triangles.insert(soup.triangles.end(), once.triangles.begin(), once.triangles.end());
-  const Bvh bvh(soup.triangles, soup.positions);
+  const detail::Bvh bvh(soup.triangles, soup.positions);
   testing::Random random(27);
   for (int i = 0; i < 500; ++i) {
     const int winner = nearest(bvh, soup, random.vector<3>(-1.5, 1.5));
@@ -119,13 +119,13 @@ TEST_CASE("many triangles with the same centre can be built", "[contact][bvh][ex
   Soup soup(1000, 28);
   for (std::size_t t = 0; t < 1000; ++t)
     for (std::size_t i = 0; i < 3; ++i) soup.positions[3 * t + i] = soup.positions[i];
-  const Bvh bvh(soup.triangles, soup.positions);
+  const detail::Bvh bvh(soup.triangles, soup.positions);
   CHECK(nearest(bvh, soup, Vector3(5, 5, 5)) == 0);
   CHECK(visited(bvh, soup.positions[0], 1e-9).size() == 1000);
 }
 
 TEST_CASE("an empty hierarchy has no nearest triangle and visits none", "[contact][bvh][extreme]") {
-  for (const Bvh& bvh : {Bvh(), Bvh(std::span<const Triangle>{}, std::span<const Vector3>{})}) {
+  for (const detail::Bvh& bvh : {detail::Bvh(), detail::Bvh(std::span<const Triangle>{}, std::span<const Vector3>{})}) {
     CHECK(bvh.nearest(Vector3::Zero(), [](int) { return 0.0; }) == -1);
     CHECK(visited(bvh, Vector3::Zero(), infinity).empty());
   }
@@ -133,7 +133,7 @@ TEST_CASE("an empty hierarchy has no nearest triangle and visits none", "[contac
 
 TEST_CASE("invalid query points are handled", "[contact][bvh][extreme][D1]") {
   const Soup soup(100, 29);
-  const Bvh bvh(soup.triangles, soup.positions);
+  const detail::Bvh bvh(soup.triangles, soup.positions);
   const double nan_value = std::numeric_limits<double>::quiet_NaN();
   for (double bad : {nan_value, infinity, -infinity, 1e308, -1e308}) {
     const Vector3 p(0.0, bad, 0.0);

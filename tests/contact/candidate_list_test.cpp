@@ -12,23 +12,23 @@ namespace { namespace candidate_list_test {
 
 constexpr int samples = 60, tools = 2;
 
-Candidate candidate(int tool, int sample, double gap) {
-  Candidate c;
+detail::Candidate candidate(int tool, int sample, double gap) {
+  detail::Candidate c;
   c.tool = tool;
   c.sample = sample;
   c.gap = gap;
   return c;
 }
 
-int search(const CandidateList& list, int tool, int sample) {
+int search(const detail::CandidateList& list, int tool, int sample) {
   const auto items = list.items();
   const auto found = std::find_if(items.begin(), items.end(),
-                                  [&](const Candidate& c) { return c.tool == tool && c.sample == sample; });
+                                  [&](const detail::Candidate& c) { return c.tool == tool && c.sample == sample; });
   return found == items.end() ? -1 : static_cast<int>(found - items.begin());
 }
 
 /// Number of points that the list does not find as the search does.
-int differences(const CandidateList& list) {
+int differences(const detail::CandidateList& list) {
   int different = 0;
   for (int tool = 0; tool < tools; ++tool)
     for (int sample = 0; sample < samples; ++sample) different += list.find(tool, sample) != search(list, tool, sample);
@@ -41,7 +41,7 @@ int differences(const CandidateList& list) {
 TEST_CASE("A list of contact points finds them by tool and sample", "[contact]") {
   using namespace candidate_list_test;
   testing::Random random(41);
-  CandidateList list(40);
+  detail::CandidateList list(40);
   CHECK(list.maximum() == 40);
   CHECK(list.find(0, 0) == -1);
   for (int round = 0; round < 3; ++round) {
@@ -51,12 +51,12 @@ TEST_CASE("A list of contact points finds them by tool and sample", "[contact]")
     for (int i = 0; i < 400; ++i) {
       const int tool = static_cast<int>(random.uniform(0.0, tools));
       const int sample = static_cast<int>(random.uniform(0.0, samples));
-      const Candidate c = candidate(tool, sample, i);
+      const detail::Candidate c = candidate(tool, sample, i);
       const int place = list.find(tool, sample);
       if (place >= 0) {
         CHECK(list.replace(place, c).gap == i);  // the same point
       } else if (list.count() < list.maximum()) {
-        const Candidate& added = list.add(c);
+        const detail::Candidate& added = list.add(c);
         CHECK(&added == &list[list.count() - 1]);
       } else {
         const int other = static_cast<int>(random.uniform(0.0, list.count()));

@@ -208,7 +208,7 @@ TEST_CASE("a capsule that presses with its side has the cap and cone of a sphere
     capsule.outward = sphere.outward = outward;
     capsule.entered = sphere.entered = 1.0;
     const Vector3 p = capsule.proxy + random.vector<3>(-12e-3, 12e-3);
-    const CorePoint found = capsule.closest(p);
+    const detail::CorePoint found = capsule.closest(p);
     double least = 1.0;
     for (int i = -2000; i <= 2000; ++i) {
       sphere.proxy = capsule.proxy + half * i / 2000.0 * capsule.axis();

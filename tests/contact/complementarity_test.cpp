@@ -14,8 +14,8 @@ using namespace palpate;
 namespace {
 
 constexpr double relaxation = 1e-6;  // relative increase of the diagonal in solve()
-struct Problem : ComplementarityProblem {
-  Problem() : ComplementarityProblem(48) {}
+struct Problem : detail::ComplementarityProblem {
+  Problem() : detail::ComplementarityProblem(48) {}
   VectorX forces() const { return Eigen::Map<const VectorX>(lambda.data(), rows()); }
 };
 

@@ -166,7 +166,7 @@ TEST_CASE("the sphere penetrates no contact point and is pushed out, not in", "[
   testing::Random random(63);
   for (double sampled_for : {radius, vertices_only}) {
     AnalyticTissue tissue(8, 0.02, 1e-2, 1e-3);  // 2.5 mm apart: the lattice matters
-    const ContactSamples samples(tissue.contact_surface(), 0.5 * sampled_for);
+    const detail::ContactSamples samples(tissue.contact_surface(), 0.5 * sampled_for);
     double deepest = infinity;
     int inward = 0, pulling = 0, touching = 0;
     for (int i = 0; i < 60; ++i) {

@@ -23,22 +23,22 @@ ContactSurface surface_to_sample(const Mesh<Tet4>& mesh) {
   return {mesh.positions, triangles};
 }
 
-Vector3 position(const ContactSurface& surface, const ContactSample& s) {
+Vector3 position(const ContactSurface& surface, const detail::ContactSample& s) {
   Vector3 x = Vector3::Zero();
   for (std::size_t a = 0; a < 3; ++a) x += s.weights[a] * surface.position(s.vertices[a]);
   return x;
 }
 
-std::vector<ContactSample> of_triangle(const ContactSamples& samples, int t) {
-  std::vector<ContactSample> own;
+std::vector<detail::ContactSample> of_triangle(const detail::ContactSamples& samples, int t) {
+  std::vector<detail::ContactSample> own;
   for (int i = samples.first_of(t); i < samples.first_of(t + 1); ++i) own.push_back(samples[i]);
   return own;
 }
 
-std::vector<Vector3> all_positions(const ContactSurface& surface, const ContactSamples& samples) {
+std::vector<Vector3> all_positions(const ContactSurface& surface, const detail::ContactSamples& samples) {
   std::vector<Vector3> all;
   for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
-    for (const ContactSample& s : of_triangle(samples, t)) all.push_back(position(surface, s));
+    for (const detail::ContactSample& s : of_triangle(samples, t)) all.push_back(position(surface, s));
   return all;
 }
 
@@ -46,7 +46,7 @@ std::vector<Vector3> all_positions(const ContactSurface& surface, const ContactS
 
 TEST_CASE("short edges are sampled at their vertices only", "[contact][samples]") {
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 1), {4, 4, 4}, BoxSplit::six));
-  const ContactSamples samples(surface, 0.36);  // diagonals are 0.354
+  const detail::ContactSamples samples(surface, 0.36);  // diagonals are 0.354
   CHECK(samples.count() == 5 * 5 * 5 - 3 * 3 * 3);
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("the lattice of a right triangle is that of its longest edge; each edg
   const ContactSurface one({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   for (int n : {1, 2, 3, 7}) {
     const int diagonal = static_cast<int>(std::ceil(std::sqrt(2.0) * n - 1e-9));
-    const ContactSamples samples(one, 1.001 / n);
+    const detail::ContactSamples samples(one, 1.001 / n);
     CHECK(samples.count() == 3 + 2 * (n - 1) + (diagonal - 1) + (diagonal - 1) * (diagonal - 2) / 2);
     CHECK(of_triangle(samples, 0).size() == static_cast<std::size_t>(samples.count()));
   }
@@ -68,19 +68,20 @@ TEST_CASE("an edge of a whole number of spacings has the same points in any roun
     for (int i = -4; i <= 4; ++i) {
       const double side = scale * (1.0 + i * 0x1p-52);
       const ContactSurface one({{0, 0, 0}, {side, 0, 0}, {0, side, 0}}, {{0, 1, 2}});
-      CHECK(ContactSamples(one, scale / parts).count() ==
-            ContactSamples(ContactSurface({{0, 0, 0}, {1.01, 0, 0}, {0, 1.01, 0}}, {{0, 1, 2}}), 1.0 / parts).count());
+      CHECK(detail::ContactSamples(one, scale / parts).count() ==
+            detail::ContactSamples(ContactSurface({{0, 0, 0}, {1.01, 0, 0}, {0, 1.01, 0}}, {{0, 1, 2}}), 1.0 / parts)
+                .count());
     }
   }
 }
 
 TEST_CASE("every sample belongs to one triangle, with barycentric weights", "[contact][samples]") {
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 2, 2}, BoxSplit::five_mirrored));
-  const ContactSamples samples(surface, 0.1);
+  const detail::ContactSamples samples(surface, 0.1);
   std::set<std::tuple<long, long, long>> places;
   int bad_weights = 0, foreign = 0, total = 0;
   for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
-    for (const ContactSample& s : of_triangle(samples, t)) {
+    for (const detail::ContactSample& s : of_triangle(samples, t)) {
       ++total;
       double sum = 0.0;
       for (double w : s.weights) {
@@ -106,7 +107,7 @@ TEST_CASE("no point of the surface is further than the spacing from a sample", "
   for (double spacing : {0.05, 0.13, 0.3, 1.0}) {
     // Long thin triangles as well: 0.5 x 0.1 cells.
     const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {2, 10, 3}, BoxSplit::six));
-    const ContactSamples samples(surface, spacing);
+    const detail::ContactSamples samples(surface, spacing);
     const std::vector<Vector3> places = all_positions(surface, samples);
     double farthest = 0.0;
     for (int i = 0; i < 3000; ++i) {
@@ -130,10 +131,10 @@ TEST_CASE("no point of the surface is further than the spacing from a sample", "
 TEST_CASE("samples on a line of the mesh are not further apart than the spacing", "[contact][samples]") {
   const ContactSurface one({{0, 0, 0}, {1, 0, 0}, {0.2, 0.7, 0.1}}, {{0, 1, 2}});
   for (double spacing : {0.07, 0.2, 0.4, 0.6}) {
-    const ContactSamples samples(one, spacing);
+    const detail::ContactSamples samples(one, spacing);
     for (std::size_t i = 0; i < 3; ++i) {
       std::vector<double> along;
-      for (const ContactSample& s : of_triangle(samples, 0)) {
+      for (const detail::ContactSample& s : of_triangle(samples, 0)) {
         std::array<double, 3> w{};
         for (std::size_t a = 0; a < 3; ++a) w[static_cast<std::size_t>(s.vertices[a])] = s.weights[a];
         if (w[i] == 0.0) along.push_back(w[(i + 1) % 3]);
@@ -167,17 +168,17 @@ TEST_CASE("a surface so coarse that a sphere would fall between its points is re
 
 TEST_CASE("the lattice of a huge triangle is bounded", "[contact][samples][extreme]") {
   const ContactSurface huge({{0, 0, 0}, {1e6, 0, 0}, {0, 1e6, 0}}, {{0, 1, 2}});
-  CHECK(ContactSamples(huge, 1e-3).count() == 33 * 34 / 2);
-  CHECK(ContactSamples(huge, 1e-300).count() == 33 * 34 / 2);
-  CHECK(ContactSamples(huge, 1e308).count() == 3);
-  CHECK(ContactSamples(ContactSurface(), 1.0).count() == 0);
+  CHECK(detail::ContactSamples(huge, 1e-3).count() == 33 * 34 / 2);
+  CHECK(detail::ContactSamples(huge, 1e-300).count() == 33 * 34 / 2);
+  CHECK(detail::ContactSamples(huge, 1e308).count() == 3);
+  CHECK(detail::ContactSamples(ContactSurface(), 1.0).count() == 0);
 }
 
 TEST_CASE("every level divides the whole surface among points that are spread evenly", "[contact][samples][levels]") {
   const auto split = GENERATE(BoxSplit::six, BoxSplit::five_mirrored);
   const auto [cells, finest] = GENERATE(std::pair{2, 0.04}, std::pair{9, 0.04}, std::pair{40, 0.03});
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {cells, cells, cells / 2}, split));
-  const ContactSamples samples(surface, finest, 0.2);
+  const detail::ContactSamples samples(surface, finest, 0.2);
   double area = 0.0;
   for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
     area += 0.5 * surface.facet_length(t) * surface.facet_length(t);
@@ -220,7 +221,7 @@ TEST_CASE("a rotated, moved and scaled copy has the same levels and areas", "[co
   const double scale = 1.7;
   for (Vector3& x : copy.positions)
     x = scale * (Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()) * x) + Vector3(0.3, -0.2, 0.1);
-  const ContactSamples samples(surface_to_sample(mesh), 0.03, 0.3),
+  const detail::ContactSamples samples(surface_to_sample(mesh), 0.03, 0.3),
       copies(surface_to_sample(copy), 0.03 * scale, 0.3 * scale);
   REQUIRE(samples.count() == copies.count());
   REQUIRE(samples.levels() == copies.levels());
@@ -237,7 +238,7 @@ TEST_CASE("a rotated, moved and scaled copy has the same levels and areas", "[co
 
 TEST_CASE("the samples of a triangle begin with those of the last levels", "[contact][samples][levels]") {
   const ContactSurface surface = surface_to_sample(box_tet4(Vector3(1, 1, 0.5), {3, 3, 2}, BoxSplit::six));
-  const ContactSamples samples(surface, 0.04, 0.3);
+  const detail::ContactSamples samples(surface, 0.04, 0.3);
   int wrong = 0, fading = 0;
   for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
     for (int s = samples.first_of(t) + 1; s < samples.first_of(t + 1); ++s)

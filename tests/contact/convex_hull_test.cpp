@@ -81,8 +81,8 @@ double distance_of_segments(const Vector3& a, const Vector3& b, const Vector3& c
   const Vector3 u = b - a, v = d - c, w = a - c;
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), det = uu * vv - uv * uv;
   double least = infinity;
-  for (const Vector3& p : {a, b}) least = std::min(least, (p - c - closest_on_segment(p, c, d) * v).norm());
-  for (const Vector3& p : {c, d}) least = std::min(least, (p - a - closest_on_segment(p, a, b) * u).norm());
+  for (const Vector3& p : {a, b}) least = std::min(least, (p - c - detail::closest_on_segment(p, c, d) * v).norm());
+  for (const Vector3& p : {c, d}) least = std::min(least, (p - a - detail::closest_on_segment(p, a, b) * u).norm());
   if (!(det > 1e-12 * uu * vv)) return least;
   const double s = (uv * v.dot(w) - vv * u.dot(w)) / det, t = (uu * v.dot(w) - uv * u.dot(w)) / det;
   if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) least = std::min(least, (w + s * u - t * v).norm());
@@ -90,7 +90,7 @@ double distance_of_segments(const Vector3& a, const Vector3& b, const Vector3& c
 }
 
 double distance_to_triangle(const std::array<Vector3, 3>& corner, const Vector3& p) {
-  const TrianglePoint on = closest_point(p, corner[0], corner[1], corner[2]);
+  const detail::TrianglePoint on = detail::closest_point(p, corner[0], corner[1], corner[2]);
   return (p - on.weights[0] * corner[0] - on.weights[1] * corner[1] - on.weights[2] * corner[2]).norm();
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("hulls of one and two points are a point and a segment", "[contact][hu
   CHECK(segment.dimension() == 1);
   for (int k = 0; k < 1000; ++k) {
     const Vector3 p = random_point(random, 4.0);
-    const double t = closest_on_segment(p, a, b);
+    const double t = detail::closest_on_segment(p, a, b);
     CHECK(std::abs(point.closest(p).distance - (p - a).norm()) <= 1e-14);
     CHECK(std::abs(segment.closest(p).distance - (p - (1 - t) * a - t * b).norm()) <= 1e-14);
   }
@@ -262,7 +262,7 @@ TEST_CASE("the separation of hull and triangle equals that of all pairs of featu
     const Vector3 at = random_point(random, 2.5);
     const std::array<Vector3, 3> corner{at + random_point(random, 1.0), at + random_point(random, 1.0),
                                         at + random_point(random, 1.0)};
-    const Separation found = separate(hull.vertices(), corner);
+    const detail::Separation found = detail::separate(hull.vertices(), corner);
     if (found.distance > 0.0) {
       ++apart;
       worst = std::max(worst, std::abs(found.distance - distance_by_features(hull, corner)));

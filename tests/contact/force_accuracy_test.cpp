@@ -10,9 +10,9 @@ using namespace palpate;
 namespace {
 
 /// One place with missing depths of 1, 2 and 3 mm at 1 N over a vertex, an edge and a facet.
-MissingDepth three_depths(double length) {
-  MissingDepth place;
-  for (std::size_t p = 0; p < MissingDepth::positions; ++p)
+detail::MissingDepth three_depths(double length) {
+  detail::MissingDepth place;
+  for (std::size_t p = 0; p < detail::MissingDepth::positions; ++p)
     place.levels[p] = {{1.0, 1e-3 * static_cast<double>(p + 1), 1e-4}, {2.0, 3e-3 * static_cast<double>(p + 1), 1e-4}};
   place.unseen = {0.0, 0.01, 0.03};
   place.facet_length = length;
@@ -45,7 +45,7 @@ const ForceAccuracy& accuracy_of_one_place() {
 
 TEST_CASE("missing depths are interpolated from zero, and beyond the last level only their doubt grows",
           "[force_error]") {
-  const MissingDepth place = three_depths(5e-3);
+  const detail::MissingDepth place = three_depths(5e-3);
   CHECK(place.at(0, 0.0).missing == 0.0);
   CHECK_THAT(place.at(0, 0.5).missing, Catch::Matchers::WithinRel(0.5e-3, 1e-12));
   CHECK_THAT(place.at(0, 1.5).missing, Catch::Matchers::WithinRel(2e-3, 1e-12));
@@ -53,7 +53,7 @@ TEST_CASE("missing depths are interpolated from zero, and beyond the last level 
   CHECK_THAT(place.at(2, 4.0).doubt,
              Catch::Matchers::WithinRel(2e-4 + 9e-3, 1e-12));  // contains what is proportional to the force
   CHECK_THAT(place.at(1, 0.5).doubt, Catch::Matchers::WithinRel(0.5e-4, 1e-12));
-  CHECK(std::isinf(MissingDepth{}.at(0, 1.0).doubt));  // nothing is known
+  CHECK(std::isinf(detail::MissingDepth{}.at(0, 1.0).doubt));  // nothing is known
 }
 
 TEST_CASE("the position over a facet follows from the loads of the vertices", "[force_error]") {

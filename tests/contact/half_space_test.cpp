@@ -24,8 +24,8 @@ double difference(const Matrix3& a, const Matrix3& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-HalfSpacePoint point(const Vector3& x, const Vector3& normal, double mu, double nu) {
-  return {x, normal, HalfSpacePoint::root_of(mu), nu, 1.0};
+detail::HalfSpacePoint point(const Vector3& x, const Vector3& normal, double mu, double nu) {
+  return {x, normal, detail::HalfSpacePoint::root_of(mu), nu, 1.0};
 }
 
 /// Displacement per force in a half-space whose outward normal is z, component by component as Johnson (1985) has them
@@ -62,12 +62,12 @@ TEST_CASE("the fields of a half-space are those of Boussinesq and Cerruti", "[co
   testing::Random random(3);
   for (int i = 0; i < 50; ++i) {
     const Place at(random);
-    const HalfSpaceField field(mu, nu, at.normal);
+    const detail::HalfSpaceField field(mu, nu, at.normal);
     const Matrix3 expected = at.axes * johnson(at.axes.transpose() * at.offset, mu, nu) * at.axes.transpose();
     CHECK(difference(field.displacement(at.offset), expected) <= 1e-13);
   }
   // Under a pull of 1 N the stress is 3 / (2 pi z^2) (Johnson 3.20a), under a tangential force none.
-  const HalfSpaceField field(mu, nu, Vector3::UnitZ());
+  const detail::HalfSpaceField field(mu, nu, Vector3::UnitZ());
   const Matrix3 under = field.traction(Vector3(0.0, 0.0, -2.0), Vector3::UnitZ());
   CHECK_THAT(under(2, 2), WithinRel(3.0 / (2.0 * pi * 4.0), 1e-13));
   CHECK_THAT(under(2, 0), WithinAbs(0.0, 1e-15));
@@ -78,7 +78,7 @@ TEST_CASE("the fields of a half-space are in equilibrium", "[contact][half_space
   testing::Random random(5);
   for (int i = 0; i < 20; ++i) {
     const Place at(random);
-    const HalfSpaceField field(700.0, nu, at.normal);
+    const detail::HalfSpaceField field(700.0, nu, at.normal);
     const auto gradient = field.gradient(at.offset);
     Matrix3 force = Matrix3::Zero(), largest = Matrix3::Zero();
     for (int m = 0; m < 3; ++m) {
@@ -101,7 +101,7 @@ TEST_CASE("the fields of a half-space are in equilibrium", "[contact][half_space
 
 TEST_CASE("the stress of a half-space carries the force", "[contact][half_space]") {
   const double nu = GENERATE(0.0, 0.3, 0.4999, 0.5);
-  const HalfSpaceField field(700.0, nu, Vector3::UnitZ());
+  const detail::HalfSpaceField field(700.0, nu, Vector3::UnitZ());
   Matrix3 total = Matrix3::Zero();  // of the tractions on half a sphere of radius 1
   constexpr int around = 12;
   for (const auto& p : GaussLegendre<5>::points) {
@@ -121,8 +121,9 @@ TEST_CASE("the compliance of a half-space is the surface value of its fields", "
   for (int i = 0; i < 20; ++i) {
     const Place at(random);
     const Vector3 flat = at.offset - at.normal.dot(at.offset) * at.normal, origin = random.vector<3>(-1.0, 1.0);
-    const HalfSpacePoint q = point(origin, at.normal, mu, nu), p = point(origin + flat, at.normal, mu, nu);
-    CHECK(difference(half_space_compliance(p, q), HalfSpaceField(mu, nu, at.normal).displacement(flat)) <= 1e-12);
+    const detail::HalfSpacePoint q = point(origin, at.normal, mu, nu), p = point(origin + flat, at.normal, mu, nu);
+    CHECK(difference(detail::half_space_compliance(p, q),
+                     detail::HalfSpaceField(mu, nu, at.normal).displacement(flat)) <= 1e-12);
   }
 }
 
@@ -133,9 +134,10 @@ TEST_CASE("the compliance of a half-space is symmetric between any two points", 
       return point(random.vector<3>(-1.0, 1.0), random.vector<3>(-1.0, 1.0).normalized(), random.uniform(1.0, 100.0),
                    random.uniform(0.0, 0.5));
     };
-    const HalfSpacePoint p = any(), q = any();
-    CHECK((half_space_compliance(p, q) - half_space_compliance(q, p).transpose()).cwiseAbs().maxCoeff() <=
-          1e-15 * half_space_compliance(p, q).cwiseAbs().maxCoeff());
+    const detail::HalfSpacePoint p = any(), q = any();
+    CHECK(
+        (detail::half_space_compliance(p, q) - detail::half_space_compliance(q, p).transpose()).cwiseAbs().maxCoeff() <=
+        1e-15 * detail::half_space_compliance(p, q).cwiseAbs().maxCoeff());
   }
 }
 
@@ -143,26 +145,26 @@ TEST_CASE("the self compliance is that of a disc under uniform traction", "[cont
   const double nu = GENERATE(0.0, 0.3, 0.4999, 0.5), radius = 0.02;
   testing::Random random(11);
   const Vector3 normal = random.vector<3>(-1.0, 1.0).normalized();
-  const HalfSpacePoint middle = point(Vector3(1.0, 2.0, 3.0), normal, 1700.0, nu);
+  const detail::HalfSpacePoint middle = point(Vector3(1.0, 2.0, 3.0), normal, 1700.0, nu);
   const Vector3 a = normal.unitOrthogonal(), b = normal.cross(a);
   Matrix3 mean = Matrix3::Zero();  // r G does not depend on r
   for (int i = 0; i < 8; ++i) {
     const double angle = 2.0 * pi * i / 8;
     const Vector3 rim = middle.position + radius * (std::cos(angle) * a + std::sin(angle) * b);
-    mean += 2.0 / 8 * half_space_compliance(middle, point(rim, normal, 1700.0, nu));
+    mean += 2.0 / 8 * detail::half_space_compliance(middle, point(rim, normal, 1700.0, nu));
   }
-  CHECK(difference(half_space_self_compliance(middle, pi * std::pow(1.06 * radius, 2)), mean) <= 1e-12);
+  CHECK(difference(detail::half_space_self_compliance(middle, pi * std::pow(1.06 * radius, 2)), mean) <= 1e-12);
 }
 
 TEST_CASE("the support of the compliance of a half-space ends smoothly", "[contact][half_space]") {
   const auto support = [](double r, double angle = 0.0) {
-    HalfSpacePoint p = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3), q = p;
+    detail::HalfSpacePoint p = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3), q = p;
     q.position[0] = r;
     q.normal = Vector3(std::sin(angle), 0.0, std::cos(angle));
     p.length = 0.5;
     q.length = 1.5;
-    CHECK(half_space_support(p, q) == half_space_support(q, p));
-    return half_space_support(p, q);
+    CHECK(detail::half_space_support(p, q) == detail::half_space_support(q, p));
+    return detail::half_space_support(p, q);
   };
   CHECK(support(2.0) == 1.0);
   CHECK_THAT(support(3.0), WithinRel(0.5, 1e-15));
@@ -178,10 +180,10 @@ TEST_CASE("the support of the compliance of a half-space ends smoothly", "[conta
 }
 
 TEST_CASE("the two sides of a slit have no compliance of a half-space between them", "[contact][half_space]") {
-  const HalfSpacePoint up = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3);
-  const HalfSpacePoint down = point(Vector3(0.0, 0.0, 1e-12), -Vector3::UnitZ(), 1.0, 0.3);
-  CHECK(supported_compliance(up, down) == Matrix3::Zero());
-  CHECK(supported_compliance(up, up) == Matrix3::Zero());  // its own is half_space_self_compliance
+  const detail::HalfSpacePoint up = point(Vector3::Zero(), Vector3::UnitZ(), 1.0, 0.3);
+  const detail::HalfSpacePoint down = point(Vector3(0.0, 0.0, 1e-12), -Vector3::UnitZ(), 1.0, 0.3);
+  CHECK(detail::supported_compliance(up, down) == Matrix3::Zero());
+  CHECK(detail::supported_compliance(up, up) == Matrix3::Zero());  // its own is half_space_self_compliance
 }
 
 TEST_CASE("the displacement by many loads is the sum of the supported compliance times the forces",
@@ -189,15 +191,15 @@ TEST_CASE("the displacement by many loads is the sum of the supported compliance
   testing::Random random(5);
   const auto made = [&] {
     const Vector3 normal = random.vector<3>(-1.0, 1.0) + Vector3(0.0, 0.0, 1.5);
-    HalfSpacePoint p = point(random.vector<3>(-5.0, 5.0), normal.normalized(), 1e3, random.uniform() * 0.5);
+    detail::HalfSpacePoint p = point(random.vector<3>(-5.0, 5.0), normal.normalized(), 1e3, random.uniform() * 0.5);
     p.body = random.uniform() < 0.2 ? 1 : 0;
     return p;
   };
   int zero = 0;
   for (int count = 0; count <= 9; ++count) {
-    HalfSpaceLoads loads(9);
+    detail::HalfSpaceLoads loads(9);
     for (int i = 0; i < 9; ++i) loads.set(i, made(), Vector3::Ones());  // of a larger count before
-    std::vector<HalfSpacePoint> points;
+    std::vector<detail::HalfSpacePoint> points;
     std::vector<Vector3> forces;
     for (int i = 0; i < count; ++i) {
       points.push_back(made());
@@ -206,12 +208,12 @@ TEST_CASE("the displacement by many loads is the sum of the supported compliance
     }
     for (int k = 0; k < 200; ++k) {
       const bool is_loaded = k % 10 == 0 && count > 0;
-      const HalfSpacePoint p = is_loaded ? points[static_cast<std::size_t>(k) % points.size()] : made();
+      const detail::HalfSpacePoint p = is_loaded ? points[static_cast<std::size_t>(k) % points.size()] : made();
       Vector3 expected(1e-3, 2e-3, 3e-3), u = expected;
       double scale = 1e-3;
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (points[i].body != p.body) continue;
-        const Vector3 part = supported_compliance(p, points[i]) * forces[i];
+        const Vector3 part = detail::supported_compliance(p, points[i]) * forces[i];
         expected += part;
         scale += part.norm();
         zero += part.isZero(0.0);

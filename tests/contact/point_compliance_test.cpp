@@ -62,13 +62,13 @@ static_assert(TissueModel<StretchedTissue>);
 
 /// Every vertex known, and shown by itself and both neighbours.
 std::shared_ptr<const SubfacetCompliance> subfacet_of(const ContactSurface& surface) {
-  std::vector<HalfSpacePoint> vertices;
+  std::vector<detail::HalfSpacePoint> vertices;
   std::vector<SubfacetCompliance::Block> blocks;
   std::vector<int> first{0};
   for (int v = 0; v < surface.vertex_count(); ++v) {
     vertices.push_back({.position = surface.position(v),
                         .normal = Vector3(0.0, 0.0, 1.0),
-                        .root = HalfSpacePoint::root_of(2e3),
+                        .root = detail::HalfSpacePoint::root_of(2e3),
                         .poisson_ratio = 0.4,
                         .length = 0.01});
     for (int other = std::max(0, v - 1); other < std::min(surface.vertex_count(), v + 2); ++other)
@@ -78,7 +78,7 @@ std::shared_ptr<const SubfacetCompliance> subfacet_of(const ContactSurface& surf
   return std::make_shared<SubfacetCompliance>(std::move(vertices), std::move(first), std::move(blocks));
 }
 
-Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const ContactSample& q) {
+Matrix3 expected(const CountingTissue& tissue, const detail::ContactSample& p, const detail::ContactSample& q) {
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 3; ++b) sum += p.weights[a] * q.weights[b] * tissue.value(p.vertices[a], q.vertices[b]);
@@ -89,11 +89,11 @@ Matrix3 expected(const CountingTissue& tissue, const ContactSample& p, const Con
 
 TEST_CASE("compliance between points is J C J^T, independent of earlier requests", "[contact][point_compliance]") {
   CountingTissue tissue;
-  const Candidates points(ContactSamples(tissue.surface, 0.004), nullptr, 8);
-  const ContactSamples& samples = points.samples();
+  const detail::Candidates points(detail::ContactSamples(tissue.surface, 0.004), nullptr, 8);
+  const detail::ContactSamples& samples = points.samples();
   const int count = samples.first_of(static_cast<int>(tissue.surface.triangles().size()));
   REQUIRE(count > 24);
-  PointCompliance compliance(8);
+  detail::PointCompliance compliance(8);
   testing::Random random(61);
   std::vector<int> hint(static_cast<std::size_t>(count), -1);
   double worst = 0.0;
@@ -120,8 +120,8 @@ TEST_CASE("compliance between points is J C J^T, independent of earlier requests
 
 TEST_CASE("cached compliance is not read again until the tissue's revision changes", "[contact][point_compliance]") {
   CountingTissue tissue;
-  const Candidates points(ContactSamples(tissue.surface, 0.004), nullptr, 8);
-  PointCompliance compliance(8);
+  const detail::Candidates points(detail::ContactSamples(tissue.surface, 0.004), nullptr, 8);
+  detail::PointCompliance compliance(8);
   const auto read = [&](int first) {
     tissue.reads = 0;
     compliance.begin_tick(tissue.compliance_revision());
@@ -151,10 +151,10 @@ TEST_CASE("cached compliance is not read again until the tissue's revision chang
 TEST_CASE("the half-space between points is kept while the surface turns and stretches",
           "[contact][point_compliance]") {
   StretchedTissue tissue;
-  Candidates points(ContactSamples(tissue.surface, 0.004), subfacet_of(tissue.surface), 8);
+  detail::Candidates points(detail::ContactSamples(tissue.surface, 0.004), subfacet_of(tissue.surface), 8);
   const int count = points.samples().first_of(static_cast<int>(tissue.surface.triangles().size()));
   const TissueView view(tissue);
-  PointCompliance kept(8);
+  detail::PointCompliance kept(8);
   testing::Random random(62);
   double worst = 0.0;
   int pairs = 0;
@@ -165,9 +165,9 @@ TEST_CASE("the half-space between points is kept while the surface turns and str
       points.pin(round % 80 == 20 ? std::span<const int>(pad) : std::span<const int>());
       kept.forget();
     }
-    PointCompliance fresh(8);
+    detail::PointCompliance fresh(8);
     std::vector<int> slots, own;
-    for (PointCompliance* c : {&kept, &fresh}) c->begin_tick(tissue.compliance_revision()), c->begin_rows();
+    for (detail::PointCompliance* c : {&kept, &fresh}) c->begin_tick(tissue.compliance_revision()), c->begin_rows();
     for (int k = 0; k < 6; ++k) {
       const int sample = static_cast<int>(random.uniform(0.0, round % 2 == 0 ? 8.0 : count - 1e-9));
       slots.push_back(kept.slot_of(view, points, sample, -1));

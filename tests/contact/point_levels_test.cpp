@@ -17,16 +17,17 @@ using Counts = std::array<int, maximum_tools>;
 using Areas = std::array<double, maximum_tools>;
 constexpr double tip_radius = 4e-3;
 
-ContactSamples plane_of_samples() {
+detail::ContactSamples plane_of_samples() {
   test::Pad pad = test::make_pad("z1", 1e4, {16, 16, 2});
-  return {pad.contact_surface(), PointLevels::finest_spacing * tip_radius, PointLevels::crowded_spacing * tip_radius};
+  return {pad.contact_surface(), detail::PointLevels::finest_spacing * tip_radius,
+          detail::PointLevels::crowded_spacing * tip_radius};
 }
 
 /// A tick in which tools press parts of a plane with these areas, in so far as they have rows. `density`: of the
 /// points, relative to that of hexagons. `spread`: points of equal area per point that presses.
-Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& areas, int capacity, double density = 1.0,
-            const Areas& vertices = {}, double spread = 1.0) {
-  std::array<PointLevels::Size, maximum_tools> sizes;
+Counts tick(detail::PointLevels& levels, const detail::ContactSamples& samples, const Areas& areas, int capacity,
+            double density = 1.0, const Areas& vertices = {}, double spread = 1.0) {
+  std::array<detail::PointLevels::Size, maximum_tools> sizes;
   sizes.fill({tip_radius, tip_radius});
   std::array<bool, maximum_tools> near{};
   for (std::size_t t = 0; t < maximum_tools; ++t) near[t] = areas[t] > 0.0;
@@ -51,9 +52,9 @@ Counts tick(PointLevels& levels, const ContactSamples& samples, const Areas& are
 }  // namespace
 
 TEST_CASE("a press has about the wanted number of points at any size of its area", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  const double finest = std::floor(samples.level_with(PointLevels::finest_spacing * tip_radius));
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  const double finest = std::floor(samples.level_with(detail::PointLevels::finest_spacing * tip_radius));
+  detail::PointLevels levels;
   for (double area = 1e-6; area < 3e-5; area *= 1.05) {
     Counts used{};
     for (int i = 0; i < 200; ++i) used = tick(levels, samples, {area}, 64);
@@ -69,9 +70,9 @@ TEST_CASE("a press has about the wanted number of points at any size of its area
 
 TEST_CASE("at large strain a press has about as many points as vertices, as far as there are rows",
           "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
+  const detail::ContactSamples samples = plane_of_samples();
   const auto points = [&](double vertices, int capacity) {
-    PointLevels levels;
+    detail::PointLevels levels;
     Counts used{};
     for (int i = 0; i < 400; ++i) used = tick(levels, samples, {6e-5}, capacity, 1.0, {vertices});
     return used[0];
@@ -85,8 +86,8 @@ TEST_CASE("at large strain a press has about as many points as vertices, as far 
 }
 
 TEST_CASE("levels change in small steps", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  detail::PointLevels levels;
   double before = 0.0;
   for (int i = 0; i < 400; ++i) {
     tick(levels, samples, {i < 200 ? 2e-5 : 4e-6}, 400);
@@ -96,9 +97,9 @@ TEST_CASE("levels change in small steps", "[contact][levels]") {
 }
 
 TEST_CASE("a print that changes by a tenth and back keeps its level", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
+  const detail::ContactSamples samples = plane_of_samples();
   for (double area = 4e-6; area < 3e-5; area *= 1.1) {
-    PointLevels levels;
+    detail::PointLevels levels;
     for (int i = 0; i < 200; ++i) tick(levels, samples, {i % 100 < 50 ? area : 1.1 * area}, 400);
     const double level = levels.level(0);
     for (int i = 0; i < 200; ++i) {
@@ -110,11 +111,11 @@ TEST_CASE("a print that changes by a tenth and back keeps its level", "[contact]
 
 TEST_CASE("a print of few points, whose size depends on the level, does not go from level to level",
           "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
+  const detail::ContactSamples samples = plane_of_samples();
   // Between levels its forces are spread over more points of equal area than at any of them.
   for (const double spread : {1.2, 1.5, 1.8})
     for (double area = 4e-6; area < 3e-5; area *= 1.05) {
-      PointLevels levels;
+      detail::PointLevels levels;
       double lowest = 100.0, highest = 0.0;
       for (int i = 0; i < 600; ++i) {
         const double level = levels.level(0);
@@ -129,8 +130,8 @@ TEST_CASE("a print of few points, whose size depends on the level, does not go f
 }
 
 TEST_CASE("where a list has no room for all points near a tool, the tool has fewer", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  detail::PointLevels levels;
   for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
   const double first = levels.level(0);
   CHECK_FALSE(levels.note_full_list(0));  // it presses: in the next ticks
@@ -145,9 +146,9 @@ TEST_CASE("where a list has no room for all points near a tool, the tool has few
 }
 
 TEST_CASE("two tools whose prints grow by two thirds in a tick have rows for all points", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
+  const detail::ContactSamples samples = plane_of_samples();
   for (double first = 1e-7; first < 2e-7; first *= 1.05) {
-    PointLevels levels;
+    detail::PointLevels levels;
     for (double area = first; area < 6e-6; area *= 1.67) {
       tick(levels, samples, {area, area}, 96);
       CAPTURE(first, area, levels.level(0));
@@ -157,8 +158,8 @@ TEST_CASE("two tools whose prints grow by two thirds in a tick have rows for all
 }
 
 TEST_CASE("on other points a tool keeps its level, and does not remember where a list was full", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  detail::PointLevels levels;
   for (int i = 0; i < 50; ++i) tick(levels, samples, {1e-6}, 64);
   const double first = levels.level(0);
   levels.note_full_list(0);
@@ -171,8 +172,8 @@ TEST_CASE("on other points a tool keeps its level, and does not remember where a
 }
 
 TEST_CASE("a tool that begins with a deep press has the level for its area at once", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  detail::PointLevels levels;
   levels.begin_tick(samples, {{{tip_radius, tip_radius}}}, {true}, {64, 24});
   levels.start(samples, 0, 3e-5);
   const double level = levels.level(0);
@@ -182,8 +183,8 @@ TEST_CASE("a tool that begins with a deep press has the level for its area at on
 }
 
 TEST_CASE("rows are divided by need, and never more than there are", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  PointLevels levels;
+  const detail::ContactSamples samples = plane_of_samples();
+  detail::PointLevels levels;
   const auto settle = [&](const Areas& areas) {
     Counts used{};
     for (int i = 0; i < 400; ++i) used = tick(levels, samples, areas, 100);
@@ -201,9 +202,9 @@ TEST_CASE("rows are divided by need, and never more than there are", "[contact][
 }
 
 TEST_CASE("a tool that rests keeps its level where the points of a finer one do not fit", "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
+  const detail::ContactSamples samples = plane_of_samples();
   for (double area = 1.5e-5; area < 6e-5; area *= 1.07) {
-    PointLevels levels;
+    detail::PointLevels levels;
     for (int i = 0; i < 100; ++i) tick(levels, samples, {area, area}, 60, 1.3);
     const double level = levels.level(0);
     int left_out = 0;
@@ -219,10 +220,10 @@ TEST_CASE("a tool that rests keeps its level where the points of a finer one do 
 
 TEST_CASE("levels above the coarsest are for tools without rows for that; flat tools have coarser ones",
           "[contact][levels]") {
-  const ContactSamples samples = plane_of_samples();
-  const double coarsest = samples.level_with(PointLevels::coarsest_spacing * tip_radius);
+  const detail::ContactSamples samples = plane_of_samples();
+  const double coarsest = samples.level_with(detail::PointLevels::coarsest_spacing * tip_radius);
   const auto settled = [&](double scale, int capacity) {
-    PointLevels levels;
+    detail::PointLevels levels;
     for (int i = 0; i < 200; ++i) {
       const double area = 1e-4;
       levels.begin_tick(samples, {{{tip_radius, scale}}}, {true}, {capacity, 18});

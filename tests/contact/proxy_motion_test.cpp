@@ -12,7 +12,7 @@ namespace {
 /// Whether a tick of a sphere of 5 mm is reported, with these forces [N], one per tick, and this path of the device
 /// [m] in every tick. `noisy`: the path reverses from tick to tick.
 std::vector<bool> reported(const std::vector<double>& forces, double path, bool noisy = false) {
-  ProxyMotion motion;
+  detail::ProxyMotion motion;
   ContactTool tool;
   tool.radius = 5e-3;
   tool.active = true;

@@ -36,9 +36,9 @@ struct Rows {
       arm.push_back(random_matrix().col(0));
       axes.push_back(random_matrix());
       compliance.set_tool(i, tool.back(), arm.back());
-      compliance.set_axis(i, RowCompliance::first_tangent, axes.back().col(0));
-      compliance.set_axis(i, RowCompliance::second_tangent, axes.back().col(1));
-      compliance.set_axis(i, RowCompliance::normal, axes.back().col(2));
+      compliance.set_axis(i, detail::RowCompliance::first_tangent, axes.back().col(0));
+      compliance.set_axis(i, detail::RowCompliance::second_tangent, axes.back().col(1));
+      compliance.set_axis(i, detail::RowCompliance::normal, axes.back().col(2));
     }
   }
   Matrix3 random_matrix() {
@@ -48,7 +48,7 @@ struct Rows {
   }
   Matrix3& block(int i, int j) { return blocks[static_cast<std::size_t>(i * 100 + j)]; }
   /// The displacement at i per force at j, with the coupling: a rotation by c (arm_j x force) moves arm_i.
-  Matrix3 coupled(int i, int j, const RowCompliance::Coupling& c) {
+  Matrix3 coupled(int i, int j, const detail::RowCompliance::Coupling& c) {
     Matrix3 m = block(i, j);
     if (tool[at(i)] != tool[at(j)]) return m;
     m += c.translation * Matrix3::Identity();
@@ -58,7 +58,7 @@ struct Rows {
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   testing::Random random{7};
-  RowCompliance compliance;
+  detail::RowCompliance compliance;
   std::vector<Matrix3> blocks = std::vector<Matrix3>(10000);
   std::vector<int> tool;
   std::vector<Vector3> arm;
@@ -68,8 +68,9 @@ struct Rows {
 TEST_CASE("Rows of the compliance along normals and in axes are those of single blocks", "[contact]") {
   const auto [name, kernels] = GENERATE(from_range(executable_kernels()));
   for (const int count : {1, 2, 4, 5, 17, 30})
-    for (const RowCompliance::Coupling& coupling :
-         {RowCompliance::Coupling{}, RowCompliance::Coupling{0.7, 0.0}, RowCompliance::Coupling{0.7, 0.4}}) {
+    for (const detail::RowCompliance::Coupling& coupling :
+         {detail::RowCompliance::Coupling{}, detail::RowCompliance::Coupling{0.7, 0.0},
+          detail::RowCompliance::Coupling{0.7, 0.4}}) {
       Rows rows(count, *kernels);
       std::vector<double> w(rows.compliance.stride()), all(9 * rows.compliance.stride());
       double error = 0.0;
@@ -96,7 +97,7 @@ TEST_CASE("Displacements of rows are sums over blocks and loads", "[contact]") {
   for (const int count : {1, 3, 4, 8, 17, 30})
     for (const int loaded : {0, 1, count / 2, count}) {
       Rows rows(count, *kernels);
-      RowVectors forces(count), displacements(count);
+      detail::RowVectors forces(count), displacements(count);
       std::vector<Vector3> force;
       for (int i = 0; i < count; ++i) {
         force.push_back(i < loaded ? Vector3(rows.random_matrix().col(1)) : Vector3(Vector3::Zero()));
@@ -126,7 +127,7 @@ TEST_CASE("A row that changes makes those after it unknown", "[contact]") {
   CHECK(!rows.compliance.knows(4, {5, 1.0}));
   // A displacement reads no number of the row that was there before.
   for (int j = 0; j <= 3; ++j) rows.compliance.set(3, j, Matrix3::Identity());
-  RowVectors forces(6), displacements(6);
+  detail::RowVectors forces(6), displacements(6);
   for (int i = 0; i < 4; ++i) forces.set(i, Vector3::UnitX());
   rows.compliance.displace(4, 4, forces, displacements);
   CHECK((displacements[3] - 4.0 * Vector3::UnitX()).norm() < 1e-14);

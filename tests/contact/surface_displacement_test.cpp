@@ -10,12 +10,12 @@ TEST_CASE("a change of the compliance of the tissue keeps what the mesh shows of
   const TissueView tissue(pad);
   const ContactSurface& surface = pad.contact_surface();
   const SubfacetCompliance& subfacet = *surface.subfacet();
-  const ContactSamples samples(surface, 5e-4, 2e-3);
-  SurfaceDisplacement displacement(surface.vertex_count(), 8);
+  const detail::ContactSamples samples(surface, 5e-4, 2e-3);
+  detail::SurfaceDisplacement displacement(surface.vertex_count(), 8);
   const int number = samples.of_vertex(surface, 20);
   REQUIRE(number >= 0);
-  const ContactSample& sample = samples[number];
-  const HalfSpacePoint point = subfacet.point(sample, samples.normal(number));
+  const detail::ContactSample& sample = samples[number];
+  const detail::HalfSpacePoint point = subfacet.point(sample, samples.normal(number));
   REQUIRE(point.is_known());
   const Vector3 force(0.0, 0.0, -0.1);
   int slot = -1;

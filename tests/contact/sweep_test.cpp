@@ -23,7 +23,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 double distance_to(const std::array<Vector3, 3>& corner, const Vector3& p) {
-  const TrianglePoint on = closest_point(p, corner[0], corner[1], corner[2]);
+  const detail::TrianglePoint on = detail::closest_point(p, corner[0], corner[1], corner[2]);
   return (p - on.weights[0] * corner[0] - on.weights[1] * corner[1] - on.weights[2] * corner[2]).norm();
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("first contact of a sphere with face, edge and corner of a triangle eq
   const std::array<Vector3, 3> corner{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
   const Vector3 up = Vector3::UnitZ();
   const auto meets = [&](const Vector3& from, const Vector3& path) {
-    return sphere_meets_triangle(from, path, 0.1, corner, up);
+    return detail::sphere_meets_triangle(from, path, 0.1, corner, up);
   };
   CHECK_THAT(meets({0.2, 0.2, 1.0}, {0, 0, -2.0}), WithinRel(0.45, 1e-14));
   CHECK_THAT(meets({0.5, -0.06, 1.0}, {0, 0, -1.0}), WithinRel(0.92, 1e-14));   // edge: 0.08 above it
@@ -113,7 +113,7 @@ TEST_CASE("at the reported first contact a sphere touches the triangle, and befo
     const Vector3 from = point(3), path = point(6);
     const double radius = random.uniform(0.01, 0.5);
     if (normal.dot(from - corner[0]) < radius) continue;
-    const double t = sphere_meets_triangle(from, path, radius, corner, normal);
+    const double t = detail::sphere_meets_triangle(from, path, radius, corner, normal);
     if (t <= 1.0) {
       ++met;
       worst = std::max(worst, std::abs(distance_to(corner, from + t * path) - radius));
@@ -143,14 +143,14 @@ TEST_CASE("at the reported first contact a rounded hull touches the triangle, an
     const double radius = random.uniform(0.01, 0.5);
     const Matrix3 turn = run % 2 ? rotation_by(point(0.2)) : Matrix3(Matrix3::Identity());
     const Vector3 from = point(3), to = from + point(6);
-    const HullPath hull(shape, from, Matrix3::Identity(), to, turn);
+    const detail::HullPath hull(shape, from, Matrix3::Identity(), to, turn);
     const auto apart = [&](double t) {
       std::vector<Vector3> now;
       for (std::size_t v = 0; v < hull.count; ++v) now.push_back(hull.start[v] + t * hull.path[v]);
-      return separate(now, corner);
+      return detail::separate(now, corner);
     };
     if (!(apart(0.0).distance > radius)) continue;
-    const double t = hull_meets_triangle(hull, radius, corner, normal, 1.0);
+    const double t = detail::hull_meets_triangle(hull, radius, corner, normal, 1.0);
     if (t <= 1.0) {
       ++met;
       worst = std::max(worst, std::abs(apart(t).distance - radius));

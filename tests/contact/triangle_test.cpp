@@ -48,7 +48,7 @@ double sampled_distance(const Vector3& p, const Corners& t, int n) {
   return best;
 }
 
-bool weights_are_fine(const TrianglePoint& q) {
+bool weights_are_fine(const detail::TrianglePoint& q) {
   double sum = 0.0;
   for (double w : q.weights) {
     if (!(w >= -1e-12 && w <= 1.0 + 1e-12)) return false;
@@ -58,29 +58,29 @@ bool weights_are_fine(const TrianglePoint& q) {
 }
 
 /// Whether the weights that the feature requires to be zero are zero.
-bool weights_match_feature(const TrianglePoint& q) {
+bool weights_match_feature(const detail::TrianglePoint& q) {
   const auto zero = [&](std::size_t i) { return q.weights[i] == 0.0; };
   switch (q.feature) {
-    case TriangleFeature::face:
+    case detail::TriangleFeature::face:
       return true;
-    case TriangleFeature::edge01:
+    case detail::TriangleFeature::edge01:
       return zero(2);
-    case TriangleFeature::edge12:
+    case detail::TriangleFeature::edge12:
       return zero(0);
-    case TriangleFeature::edge20:
+    case detail::TriangleFeature::edge20:
       return zero(1);
-    case TriangleFeature::vertex0:
+    case detail::TriangleFeature::vertex0:
       return zero(1) && zero(2);
-    case TriangleFeature::vertex1:
+    case detail::TriangleFeature::vertex1:
       return zero(0) && zero(2);
-    case TriangleFeature::vertex2:
+    case detail::TriangleFeature::vertex2:
       return zero(0) && zero(1);
   }
   return false;
 }
 
-TrianglePoint closest(const Vector3& p, const Corners& t) {
-  return closest_point(p, t.a, t.b, t.c);
+detail::TrianglePoint closest(const Vector3& p, const Corners& t) {
+  return detail::closest_point(p, t.a, t.b, t.c);
 }
 
 }  // namespace
@@ -89,17 +89,17 @@ TEST_CASE("each region around a triangle gives its feature and its closest point
   const Corners t{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   struct Case {
     Vector3 point, answer;
-    TriangleFeature feature;
+    detail::TriangleFeature feature;
   };
   for (double height : {-0.7, 0.0, 0.7})
-    for (const Case& c : {Case{{0.5, 0.5, height}, {0.5, 0.5, 0}, TriangleFeature::face},
-                          Case{{0.7, -1, height}, {0.7, 0, 0}, TriangleFeature::edge01},
-                          Case{{2, 2, height}, {1, 1, 0}, TriangleFeature::edge12},
-                          Case{{-1, 0.7, height}, {0, 0.7, 0}, TriangleFeature::edge20},
-                          Case{{-1, -1, height}, {0, 0, 0}, TriangleFeature::vertex0},
-                          Case{{3, -0.5, height}, {2, 0, 0}, TriangleFeature::vertex1},
-                          Case{{-0.5, 3, height}, {0, 2, 0}, TriangleFeature::vertex2}}) {
-      const TrianglePoint q = closest(c.point, t);
+    for (const Case& c : {Case{{0.5, 0.5, height}, {0.5, 0.5, 0}, detail::TriangleFeature::face},
+                          Case{{0.7, -1, height}, {0.7, 0, 0}, detail::TriangleFeature::edge01},
+                          Case{{2, 2, height}, {1, 1, 0}, detail::TriangleFeature::edge12},
+                          Case{{-1, 0.7, height}, {0, 0.7, 0}, detail::TriangleFeature::edge20},
+                          Case{{-1, -1, height}, {0, 0, 0}, detail::TriangleFeature::vertex0},
+                          Case{{3, -0.5, height}, {2, 0, 0}, detail::TriangleFeature::vertex1},
+                          Case{{-0.5, 3, height}, {0, 2, 0}, detail::TriangleFeature::vertex2}}) {
+      const detail::TrianglePoint q = closest(c.point, t);
       CHECK(q.feature == c.feature);
       CHECK((t.at(q.weights) - c.answer).norm() <= 1e-15);
     }
@@ -115,7 +115,7 @@ TEST_CASE("the closest point is correct for 200 000 random triangles and points"
     const bool thin = i % 5 == 0;  // and obtuse
     if (thin) t.c = t.a + 1.5 * (t.b - t.a) + 1e-3 * (t.c - t.a);
     const Vector3 p = i % 7 == 0 ? t.at({0.3, 0.3, 0.4}) : random.vector<3>(-2, 2);
-    const TrianglePoint q = closest(p, t);
+    const detail::TrianglePoint q = closest(p, t);
     if (!weights_are_fine(q) || !weights_match_feature(q)) ++bad_weights;
     const double error = std::abs((p - t.at(q.weights)).norm() - exact_distance(p, t));
     (thin ? worst_thin : worst) = std::max(thin ? worst_thin : worst, error);
@@ -180,7 +180,7 @@ TEST_CASE("a degenerate triangle gives a point of one of its edges", "[contact][
     double worst = 0.0;
     for (int i = 0; i < 2000; ++i) {
       const Vector3 p = random.vector<3>(-2, 2);
-      const TrianglePoint q = closest(p, n.t);
+      const detail::TrianglePoint q = closest(p, n.t);
       if (!weights_are_fine(q)) ++bad;
       const double d = (p - n.t.at(q.weights)).norm();
       if (n.is_closest) worst = std::max(worst, std::isfinite(d) ? std::abs(d - exact_distance(p, n.t)) : infinity);

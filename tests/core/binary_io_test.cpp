@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::uint64_t hash_of(std::span<const unsigned char> bytes) {
-  ContentHash hash;
+  detail::ContentHash hash;
   hash.add(bytes);
   return hash.digest();
 }
@@ -84,7 +84,7 @@ TEST_CASE("the hash depends on lengths, order and splitting", "[core][hash]") {
   CHECK(std::ranges::adjacent_find(seen) == seen.end());
 
   const auto of = [](std::string_view a, std::string_view b) {
-    ContentHash h;
+    detail::ContentHash h;
     h.add(a);
     h.add(b);
     return h.digest();
@@ -122,14 +122,14 @@ TEST_CASE("arrays of any length are read back bit by bit", "[core][binary]") {
     std::vector<double> back(count);
     const detail::File in(std::fopen((folder / "a").string().c_str(), "rb"));
     BinaryReader reader(in.get());
-    CHECK(reader.expect(std::uint64_t{42}, ReadFailure::unfit));
+    CHECK(reader.expect(std::uint64_t{42}, detail::ReadFailure::unfit));
     CHECK(reader.array(std::span<double>(back)));
     CHECK(back == numbers);
     CHECK(reader.digest() == writer.digest());
     CHECK(reader.bytes_read() == writer.written());
     double more = 0.0;
     CHECK_FALSE(reader.value(more));
-    CHECK(reader.failure() == ReadFailure::ended);
+    CHECK(reader.failure() == detail::ReadFailure::ended);
   }
 }
 
@@ -145,15 +145,15 @@ TEST_CASE("a reader stops at the first error", "[core][binary]") {
     const detail::File in(std::fopen((folder / "a").string().c_str(), "rb"));
     BinaryReader reader(in.get());
     std::vector<double> values(count, -1.0);
-    reader.expect(first, ReadFailure::unfit);
+    reader.expect(first, detail::ReadFailure::unfit);
     reader.array(std::span<double>(values));
     if (!reader.good() && count != 2) CHECK(values == std::vector<double>(count, -1.0));
     return reader.failure();
   };
-  CHECK(failure(5, 2) == ReadFailure::none);
-  CHECK(failure(6, 2) == ReadFailure::unfit);
-  CHECK(failure(5, 1) == ReadFailure::damaged);
-  CHECK(failure(5, 3) == ReadFailure::damaged);
+  CHECK(failure(5, 2) == detail::ReadFailure::none);
+  CHECK(failure(6, 2) == detail::ReadFailure::unfit);
+  CHECK(failure(5, 1) == detail::ReadFailure::damaged);
+  CHECK(failure(5, 3) == detail::ReadFailure::damaged);
 }
 
 TEST_CASE("a file is replaced completely or not at all", "[core][atomic_file]") {
@@ -161,7 +161,7 @@ TEST_CASE("a file is replaced completely or not at all", "[core][atomic_file]") 
   const std::string path = (folder / "a").string();
   std::ofstream(path) << "old";
   {
-    AtomicFile file(path);
+    detail::AtomicFile file(path);
     REQUIRE(file.stream() != nullptr);
     std::fputs("half of the ne", file.stream());
     CHECK(text_of(path) == "old");
@@ -169,7 +169,7 @@ TEST_CASE("a file is replaced completely or not at all", "[core][atomic_file]") 
   CHECK(text_of(path) == "old");
   CHECK(folder.files() == 1);
   {
-    AtomicFile file(path);
+    detail::AtomicFile file(path);
     std::fputs("new", file.stream());
     CHECK(file.commit());
   }
@@ -180,7 +180,7 @@ TEST_CASE("a file is replaced completely or not at all", "[core][atomic_file]") 
 TEST_CASE("several writers of one file do not interfere", "[core][atomic_file]") {
   const Folder folder;
   const std::string path = (folder / "a").string();
-  AtomicFile one(path), two(path);
+  detail::AtomicFile one(path), two(path);
   std::fputs("one", one.stream());
   std::fputs("two", two.stream());
   CHECK(two.commit());
@@ -194,11 +194,11 @@ TEST_CASE("a failed write is reported", "[core][atomic_file]") {
   std::ofstream(folder / "file") << "x";
   fs::create_directory(folder / "folder");
   for (const char* name : {"no/such", "file/below"}) {
-    AtomicFile file((folder / name).string());
+    detail::AtomicFile file((folder / name).string());
     CHECK(file.stream() == nullptr);
     CHECK_FALSE(file.error().empty());
   }
-  AtomicFile onto_folder((folder / "folder").string());
+  detail::AtomicFile onto_folder((folder / "folder").string());
   REQUIRE(onto_folder.stream() != nullptr);
   CHECK_FALSE(onto_folder.commit());
   CHECK_FALSE(onto_folder.error().empty());
@@ -216,7 +216,7 @@ TEST_CASE("only old leftovers of the same file are removed", "[core][atomic_file
   put("b.tmp-0123456789abcdef", 2);   // belongs to another file
   put("a.tmp-0123456789abcdeX", 2);   // not our pattern
   put("a.tmp-0123456789abcdef0", 2);  // nor this
-  AtomicFile file((folder / "a").string());
+  detail::AtomicFile file((folder / "a").string());
   CHECK(file.commit());
   CHECK_FALSE(fs::exists(folder / "a.tmp-0123456789abcdef"));
   CHECK(folder.files() == 5);

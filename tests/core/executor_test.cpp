@@ -44,7 +44,7 @@ static_assert(!Executor<ReturnsNothing>);
 
 TEST_CASE("laws of executors", "[core][executor]") {
   for (const int threads : {1, 2, 3, 7}) {
-    StartedThreads started(threads);
+    detail::StartedThreads started(threads);
     CHECK(started.threads() == threads);
     CHECK(testing::describe(testing::executor_laws(started)) == "");
     SetupThreads any(threads);
@@ -55,7 +55,7 @@ TEST_CASE("laws of executors", "[core][executor]") {
   SetupThreads of_busy(busy);
   CHECK(of_busy.threads() == 4);
   CHECK(testing::describe(testing::executor_laws(of_busy)) == "");
-  CHECK(StartedThreads().threads() >= 1);
+  CHECK(detail::StartedThreads().threads() >= 1);
 }
 
 TEST_CASE("laws of executors can fail", "[core][executor]") {

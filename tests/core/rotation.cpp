@@ -92,8 +92,8 @@ TEST_CASE("if several rotations are closest, the result is one of them", "[core]
 TEST_CASE("the closest rotation in float and in lanes", "[core][rotation]") {
   testing::Random random(10);
   for (int k = 0; k < 200; ++k) {
-    Tensor3<Lanes<double, 8>> wide;
-    Tensor3<Lanes<float, 16>> single;
+    Tensor3<detail::Lanes<double, 8>> wide;
+    Tensor3<detail::Lanes<float, 16>> single;
     std::vector<Known> known;
     for (int i = 0; i < 16; ++i) {  // one lane in four is degenerate: the others must not be affected
       known.emplace_back(random, i % 4 == 0 ? Vector3(1.0, 0.0, 0.0) : Vector3(1.2, 0.9, random.uniform(-0.5, 0.8)));

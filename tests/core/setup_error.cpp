@@ -131,8 +131,9 @@ TEST_CASE("ids of refusals are translated to the mesh as given", "[core][setup_e
     CHECK(refused_ids(SetupIds::elements, {0, 1}) == Ids{20, 22});
     CHECK(refused_ids(SetupIds::others, {0, 2}) == Ids{0, 2});
     CHECK(refused_ids(SetupIds::elements, {-1, 2}) == Ids{-1, 2});  // does not refer to an element: unchanged
-    CHECK_THROWS_WITH(raise_at(SetupIds::nodes, 2, SetupErrorKind::bad_density, "a node has no mass", "Give one"),
-                      "bad_density: a node has no mass [node 13]. Give one");
+    CHECK_THROWS_WITH(
+        detail::raise_at(SetupIds::nodes, 2, SetupErrorKind::bad_density, "a node has no mass", "Give one"),
+        "bad_density: a node has no mass [node 13]. Give one");
     {
       const ScopedIdTranslation inner(plain);
       CHECK(refused_ids(SetupIds::nodes, {0, 2}) == Ids{0, 2});

@@ -11,10 +11,10 @@
 using namespace palpate;
 
 TEST_CASE("lanes compute the same as single numbers", "[core][lanes]") {
-  using Eight = Lanes<double, 8>;
+  using Eight = detail::Lanes<double, 8>;
   STATIC_REQUIRE(sizeof(Eight) == 64);
   STATIC_REQUIRE(alignof(Eight) == 64);
-  STATIC_REQUIRE(sizeof(Lanes<float, 16>) == 64);
+  STATIC_REQUIRE(sizeof(detail::Lanes<float, 16>) == 64);
   const double from[] = {9, 0.1, -1.5, 2, -3, 0.25, 1e300, -1e-300, 7}, to[] = {9, 2, 3, -1.5, 0.5, 1, 0.25, 4, 5};
   const Eight a = Eight::load(from + 1), b = Eight::load(to + 1);  // no alignment is required
   double out[8];
@@ -37,10 +37,10 @@ TEST_CASE("lanes compute the same as single numbers", "[core][lanes]") {
     CHECK(((a > 0.0) & (b > 0.0))[i] == (x > 0.0 && y > 0.0));
     CHECK(((a > 0.0) | (b > 0.0))[i] == (x > 0.0 || y > 0.0));
   }
-  CHECK(any(a < 0.0));
-  CHECK_FALSE(all(a < 0.0));
-  CHECK(all(a <= a));
-  CHECK_FALSE(any(Eight(std::numeric_limits<double>::quiet_NaN()) <= a));
+  CHECK(detail::any(a < 0.0));
+  CHECK_FALSE(detail::all(a < 0.0));
+  CHECK(detail::all(a <= a));
+  CHECK_FALSE(detail::any(Eight(std::numeric_limits<double>::quiet_NaN()) <= a));
 }
 
 TEST_CASE("tensors compute the same as Eigen", "[core][tensor]") {

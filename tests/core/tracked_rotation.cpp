@@ -80,7 +80,7 @@ TEST_CASE("tracking recovers after flat, collapsed and non-finite deformations",
 }
 
 TEST_CASE("rotations are tracked in single-precision lanes", "[core][rotation]") {
-  using Lane = Lanes<float, 16>;
+  using Lane = detail::Lanes<float, 16>;
   testing::Random random(17);
   Quaternion<Lane> q{Lane(1.0f), Lane(0.0f), Lane(0.0f), Lane(0.0f)};
   double worst = 0.0;

@@ -77,7 +77,7 @@ Shape shape_of(const cross::Scene& scene, const cross::Body& body) {
 }
 
 double distance_to(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
-  const palpate::TrianglePoint closest = palpate::closest_point(p, a, b, c);
+  const palpate::detail::TrianglePoint closest = palpate::detail::closest_point(p, a, b, c);
   return (p - closest.weights[0] * a - closest.weights[1] * b - closest.weights[2] * c).norm();
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("cross: groups list outward faces, under a reflection too") {
         INFO(scene.body << " " << scene.element);
         const auto boundary = palpate::extract_boundary<E>(mesh);
         const palpate::Group& group = *mesh.find_group("touchable");
-        const auto faces = palpate::resolve_faces<E>(mesh, boundary, std::string("touchable"));
+        const auto faces = palpate::detail::resolve_faces<E>(mesh, boundary, std::string("touchable"));
         CHECK(faces.size() == group.faces.size());
         CHECK(palpate::resolve_nodes<E>(mesh, boundary, std::string("support")).size() > 2);
         for (const auto& face : group.faces) {

@@ -148,7 +148,7 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   };
   s.position = {-0.004, 0.03, 0.0201};
   move({0.044, 0.03, 0.0201}, 960);
-  const BladeCut& blade = *servo.blade();
+  const detail::BladeCut& blade = *servo.blade();
   const double stretch = threshold / 500.0;  // of the coupling
   CHECK(blade.edge()[0] == Catch::Approx(0.044 - stretch).margin(1e-4));
   CHECK(most == Catch::Approx(threshold));
@@ -163,7 +163,7 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
       const Mesh<Tet4> whole = mesh;
       for (Index e = 0; e < mesh.element_count(); ++e)
         for (std::size_t f = 0; f < 4; ++f) {
-          const auto nodes = face_ids<Tet4>(whole, e, f);
+          const auto nodes = detail::face_ids<Tet4>(whole, e, f);
           const Vector3 a = whole.position(nodes[0]), b = whole.position(nodes[1]), c = whole.position(nodes[2]);
           const double up = 0.5 * cross(Vector3(b - a), Vector3(c - a))[2];
           bool inside = topology.neighbour(e, f) < 0;

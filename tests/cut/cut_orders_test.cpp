@@ -18,7 +18,7 @@ CutOrder removal(Index element) {
 }  // namespace
 
 TEST_CASE("all orders are taken as one, only once, and are open until done", "[cut][orders]") {
-  CutOrders orders;
+  detail::CutOrders orders;
   CHECK_FALSE(orders.are_open());
   CHECK(orders.take().count == 0);
   orders.add(removal(3));
@@ -28,7 +28,7 @@ TEST_CASE("all orders are taken as one, only once, and are open until done", "[c
   orders.add(BladeSweep{});
   CHECK(orders.try_add(BladeSweep{}));
   CHECK(orders.are_open());
-  const CutOrders::Taken taken = orders.take();
+  const detail::CutOrders::Taken taken = orders.take();
   CHECK(taken.count == 4);
   CHECK(taken.order.remove == std::vector<Index>{3});
   REQUIRE(taken.order.open.size() == 1);
@@ -45,12 +45,12 @@ TEST_CASE("all orders are taken as one, only once, and are open until done", "[c
 }
 
 TEST_CASE("a tick is notified when too many sweeps wait, and none is lost", "[cut][orders][extreme]") {
-  CutOrders orders;
+  detail::CutOrders orders;
   unsigned accepted = 0;
   while (accepted < 1000 && orders.try_add(BladeSweep{})) ++accepted;
   CHECK(accepted >= 255);
   CHECK(accepted <= 256);
-  const CutOrders::Taken taken = orders.take();
+  const detail::CutOrders::Taken taken = orders.take();
   CHECK(taken.count == accepted);
   CHECK(taken.sweeps.size() == accepted);
   orders.done(taken);
@@ -60,7 +60,7 @@ TEST_CASE("a tick is notified when too many sweeps wait, and none is lost", "[cu
 
 TEST_CASE("orders from two threads reach a third thread exactly once", "[cut][orders]") {
   constexpr Index each = 2000;
-  CutOrders orders;
+  detail::CutOrders orders;
   std::thread first([&] {
     for (Index i = 0; i < each; ++i) orders.add(removal(i));
   });
@@ -70,7 +70,7 @@ TEST_CASE("orders from two threads reach a third thread exactly once", "[cut][or
   std::vector<int> seen(static_cast<std::size_t>(2 * each), 0);
   std::size_t count = 0;
   while (count < seen.size()) {
-    const CutOrders::Taken taken = orders.take();
+    const detail::CutOrders::Taken taken = orders.take();
     for (const Index e : taken.order.remove) ++seen[static_cast<std::size_t>(e)];
     count += taken.count;
     orders.done(taken);
@@ -82,23 +82,23 @@ TEST_CASE("orders from two threads reach a third thread exactly once", "[cut][or
 }
 
 TEST_CASE("orders are stalled when nobody processes them, not while calls take or wait for long", "[cut][orders]") {
-  CutServed served;
+  detail::CutServed served;
   const auto stalled_within = [&](int ticks) {
     bool any = false;
     for (int k = 0; k < ticks; ++k) any = served.is_stalled(true) || any;
     return any;
   };
-  CHECK_FALSE(stalled_within(CutServed::patience));
+  CHECK_FALSE(stalled_within(detail::CutServed::patience));
   CHECK(stalled_within(1));
   {
-    const CutServed::Call working(served), waiting(served);  // of two threads
-    CHECK_FALSE(stalled_within(3 * CutServed::patience));
+    const detail::CutServed::Call working(served), waiting(served);  // of two threads
+    CHECK_FALSE(stalled_within(3 * detail::CutServed::patience));
   }
-  CHECK_FALSE(stalled_within(CutServed::patience));
+  CHECK_FALSE(stalled_within(detail::CutServed::patience));
   CHECK(stalled_within(1));
   CHECK_FALSE(served.is_stalled(false));  // nothing waits
   served.report_failed(true);
   CHECK(served.is_stalled(false));
-  { const CutServed::Call call(served); }
+  { const detail::CutServed::Call call(served); }
   CHECK_FALSE(served.is_stalled(false));
 }

@@ -15,12 +15,12 @@ template <class E>
 struct CutBlock {
   CutPhysics<E> physics;
   CutTopology<E> topology;
-  CutSystem<E> system;
+  detail::CutSystem<E> system;
 
   CutBlock(const Mesh<E>& mesh, const Scene& scene, const std::vector<NodeId>& kept)
       : physics(make_body(mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0}),
                 extract_boundary<E>(mesh), scene),
-        topology(mesh, resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained),
+        topology(mesh, detail::resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained),
         system(topology, physics, kept) {}
 
   /// Cuts, and folds from time to time.
@@ -44,7 +44,7 @@ struct CutBlock {
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
       if (is_constrained(node) && system.place(node, 2) >= 0) kept.push_back(node);
-    system = CutSystem<E>(topology, physics, kept);
+    system = detail::CutSystem<E>(topology, physics, kept);
     last.reset();
     return true;
   }
@@ -54,7 +54,7 @@ struct CutBlock {
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
       if (is_constrained(node) && (system.place(node, 0) >= 0 || system.place(node, 2) >= 0)) kept.push_back(node);
-    const CutSystem<E> fresh(topology, physics, kept);
+    const detail::CutSystem<E> fresh(topology, physics, kept);
     const auto step = last ? last : system.folded_step();
     const auto truth = fresh.folded_step();
     double wrong = 0.0, scale = 0.0;
@@ -80,7 +80,7 @@ struct CutBlock {
     UNSCOPED_INFO("compliance " << wrong / scale << ", displacement " << moved / far);
     return scale == 0.0 ? 0.0 : std::max(wrong / scale, far > 0.0 ? moved / far : 0.0);
   }
-  std::shared_ptr<const CutStep> last;  // until it is folded
+  std::shared_ptr<const detail::CutStep> last;  // until it is folded
 };
 
 std::vector<NodeId> top_of(const Mesh<Tet4>& mesh) {
@@ -111,7 +111,7 @@ TEST_CASE("the compliance after removals and slits equals that of a new model", 
   CHECK(b.error() < 1e-10);
   CHECK(b.system.measured_error() < 1e-10);
   const BladeSweep slit{{0.05, -1, 0.031}, {0.05, 2, 0.031}, {0.05, -1, 0.2}, {0.05, 2, 0.2}};
-  const auto opened = b.topology.apply({{}, swept_faces(b.topology, slit, rest)});
+  const auto opened = b.topology.apply({{}, detail::swept_faces(b.topology, slit, rest)});
   CHECK(!opened.copies.empty());
   b.last = b.system.update(b.topology, opened);
   CHECK(b.last->smallest < 0.5);
@@ -176,7 +176,7 @@ TEST_CASE("a factor that was started before the last cuts applies them as one", 
     std::vector<NodeId> kept;
     for (const NodeId node : top_of(mesh))
       if (b.is_constrained(node)) kept.push_back(node);
-    CutRenewal<Tet4> renewal(b.topology, b.physics, kept, {});
+    detail::CutRenewal<Tet4> renewal(b.topology, b.physics, kept, {});
     for (int k = 0; k < 6; ++k) cut();
     while (!renewal.is_done()) std::this_thread::yield();
     auto made = renewal.take(b.topology);
@@ -193,7 +193,7 @@ TEST_CASE("displacements of all nodes under a surface load equal those of a new 
   b.cut({{80}, {}});
   const std::vector<std::pair<NodeId, Vector3>> forces{{top_of(mesh)[7], {0.1, 0.2, -0.5}}};
   const VectorX u = b.system.displacement_with(forces);
-  CutSystem<Tet4> fresh(b.topology, b.physics, top_of(mesh));
+  detail::CutSystem<Tet4> fresh(b.topology, b.physics, top_of(mesh));
   const VectorX truth = fresh.displacement_with(forces);
   double wrong = 0.0;
   for (NodeId node = 0; node < b.topology.mesh().node_count(); ++node)
@@ -207,9 +207,9 @@ TEST_CASE("a column cut to half its width is twice as soft", "[cut]") {
   const Scene scene = Scene().fix("z0").traction("z1", {0.0, 0.0, 10.0});
   CutPhysics<Tet4> physics(make_body(mesh, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.0, .density = 0.0}),
                            extract_boundary<Tet4>(mesh), scene);
-  CutTopology<Tet4> topology(mesh, resolve_essential(mesh, extract_boundary<Tet4>(mesh), scene).constrained);
+  CutTopology<Tet4> topology(mesh, detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), scene).constrained);
   const NodeId tip = mesh.find_group("z1")->nodes[0];
-  CutSystem<Tet4> system(topology, physics, {tip});
+  detail::CutSystem<Tet4> system(topology, physics, {tip});
   CHECK(std::abs(system.displacement()[3 * Index{tip} + 2] - 10.0 * 0.1 / 1e4) < 1e-12);
   // Remove every second column of cells. The load per column does not change: a column takes its own traction with it.
   CutOrder order;

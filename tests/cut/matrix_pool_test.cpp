@@ -5,7 +5,7 @@
 using namespace palpate;
 
 TEST_CASE("a pool reuses only matrices without readers", "[cut]") {
-  MatrixPool pool;
+  detail::MatrixPool pool;
   pool.prepare(10, 2);
   auto a = pool.take(10), b = pool.take(10), c = pool.take(10);
   CHECK(a != b);

@@ -42,7 +42,7 @@ SlitStrip slit_strip(int rows, bool slit) {
 
 TEST_CASE("the lips of a slit are on two sides, whichever part keeps the vertices", "[cut][moving][sides]") {
   const SlitStrip s = slit_strip(5, true);
-  const std::vector<double> side = slit_sides(s.triangles, s.origin);
+  const std::vector<double> side = detail::slit_sides(s.triangles, s.origin);
   REQUIRE(side.size() == s.origin.size());
   const double left = side[static_cast<std::size_t>(s.left[0])];
   CHECK(std::abs(left) == 1.0);
@@ -60,5 +60,5 @@ TEST_CASE("the lips of a slit are on two sides, whichever part keeps the vertice
 
 TEST_CASE("a surface without slits has no sides", "[cut][moving][sides]") {
   const SlitStrip s = slit_strip(3, false);
-  for (const double x : slit_sides(s.triangles, s.origin)) CHECK(x == 0.0);
+  for (const double x : detail::slit_sides(s.triangles, s.origin)) CHECK(x == 0.0);
 }

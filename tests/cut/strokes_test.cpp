@@ -76,7 +76,7 @@ TEST_CASE("short strokes sever a moving body that hangs", "[cut][strokes][moving
 }
 
 TEST_CASE("an edge is crossed by the lines that move over it", "[cut][strokes]") {
-  const RestingEdge edge{{0, -1, 0}, {0, 1, 0}};
+  const detail::RestingEdge edge{{0, -1, 0}, {0, 1, 0}};
   const Vector3 p(-1, 0, -1), q(1, 0.2, -1.1), up(0, 0, 3);
   CHECK(edge.is_crossed(p, q, p + up, q + up));
   CHECK(edge.is_crossed(p + up, q + up, p, q));

@@ -28,8 +28,8 @@ BladeSweep plane_x(double x) {
 Vector3 rest(const CutTopology<Tet4>& t, NodeId node) {
   return t.mesh().position(node);
 }
-std::vector<ElementFace> swept(const CutTopology<Tet4>& t, const BladeSweep& sweep) {
-  return swept_faces(t, sweep, [&](NodeId node) { return rest(t, node); });
+std::vector<detail::ElementFace> swept(const CutTopology<Tet4>& t, const BladeSweep& sweep) {
+  return detail::swept_faces(t, sweep, [&](NodeId node) { return rest(t, node); });
 }
 
 struct Volumes {
@@ -61,7 +61,7 @@ void check_state(const CutTopology<Tet4>& t) {
     std::vector<std::uint8_t> constrained(part.positions.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (nodes[i] >= 0) constrained[static_cast<std::size_t>(nodes[i])] = t.constrained()[i];
-    for (const FreeRigidModes& fragment : free_rigid_modes(part, constrained))
+    for (const detail::FreeRigidModes& fragment : detail::free_rigid_modes(part, constrained))
       CHECK((fragment.count() == 0) == (state == ElementState::supported));
   }
 }
@@ -118,7 +118,7 @@ TEST_CASE("a slit that ends in the body opens up to its tip", "[cut]") {
   CHECK(change.fragments.empty());
   CHECK(!change.copies.empty());
   CHECK(change.exposed.size() % 2 == 0);
-  for (const NodeCopy& copy : change.copies) {
+  for (const detail::NodeCopy& copy : change.copies) {
     CHECK(rest(t, copy.node) == rest(t, copy.parent));
     CHECK(rest(t, copy.node)[2] > 0.03);  // no node below the tip is split
   }

@@ -85,7 +85,7 @@ struct WithTorque : Good {
   }
   void render_torque(const Vector3& wanted, Status& status) noexcept {
     bool shortened = false;
-    torque = limit_length(wanted, 0.1, shortened);
+    torque = detail::limit_length(wanted, 0.1, shortened);
     if (shortened) status.set(StatusFlag::saturated);
   }
   ToolState read() noexcept {

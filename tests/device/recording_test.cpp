@@ -135,11 +135,11 @@ struct HostileLocale {
   }
 };
 
-const std::string header = std::string(recording_header) + '\n';
+const std::string header = std::string(detail::recording_header) + '\n';
 const std::string row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf,0,0\n";
-const std::string middle_header = std::string(recording_header_without_now) + '\n';
+const std::string middle_header = std::string(detail::recording_header_without_now) + '\n';
 const std::string middle_row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0,0,inf\n";
-const std::string old_header = std::string(recording_header_without_errors) + '\n';
+const std::string old_header = std::string(detail::recording_header_without_errors) + '\n';
 const std::string old_row = "0,0,0,0,nan,nan,nan,1,0,0,0,0,1,0,0,0,0\n";
 
 }  // namespace

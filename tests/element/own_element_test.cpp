@@ -52,13 +52,13 @@ TEST_CASE("the boundary of two such elements", "[element][surface]") {
   Vector3 closed = Vector3::Zero();
   double volume = 0.0, by_elements = 0.0;
   for (const auto& face : boundary)
-    with_face_element<Hex12>(face.nodes.size(), [&]<FaceElement F>() {
-      const auto x = face_nodes<F>(mesh, face);
-      const auto areas = shape_area_vectors<F>(x);
+    detail::with_face_element<Hex12>(face.nodes.size(), [&]<FaceElement F>() {
+      const auto x = detail::face_nodes<F>(mesh, face);
+      const auto areas = detail::shape_area_vectors<F>(x);
       closed += areas.colwise().sum().transpose();
       volume += areas.cwiseProduct(x).sum() / 3.0;
     });
-  for (Index e = 0; e < 2; ++e) by_elements += shape_volumes<Hex12>(element_nodes<Hex12>(mesh, e)).sum();
+  for (Index e = 0; e < 2; ++e) by_elements += detail::shape_volumes<Hex12>(element_nodes<Hex12>(mesh, e)).sum();
   CHECK(closed.norm() <= 1e-13);
   CHECK_THAT(volume, Catch::Matchers::WithinRel(by_elements, 1e-12));
 }
@@ -67,7 +67,7 @@ TEST_CASE("an element with two kinds of faces passes the stiffness law suite", "
   const Body<Hex12> body = test::body_of(pair(), {test::liver});
   const BlockMatrix k = assemble_stiffness<Hex12>(body, {});
   CHECK(testing::describe(testing::stiffness_laws(body, k)) == "");
-  CHECK(testing::describe(testing::same_stiffness_laws(k, MatrixFreeStiffness<Hex12>(body, {}))) == "");
+  CHECK(testing::describe(testing::same_stiffness_laws(k, detail::MatrixFreeStiffness<Hex12>(body, {}))) == "");
 }
 
 TEST_CASE("a group may mix faces with different numbers of nodes", "[element][surface]") {
@@ -75,7 +75,7 @@ TEST_CASE("a group may mix faces with different numbers of nodes", "[element][su
   Group& ends = mesh.groups.get_or_add("mixed", 2);
   const auto boundary = extract_boundary<Hex12>(mesh);
   for (std::size_t f : {0U, 1U, 8U, 9U}) ends.faces.emplace_back(boundary[f].nodes.begin(), boundary[f].nodes.end());
-  CHECK(resolve_faces(mesh_ref(mesh), boundary, "mixed").size() == 4);
+  CHECK(detail::resolve_faces(mesh_ref(mesh), boundary, "mixed").size() == 4);
   ends.faces.push_back({0, 1, 2, 3, 4});
-  CHECK_REFUSED(SetupErrorKind::unsupported, (resolve_faces(mesh_ref(mesh), boundary, "mixed")));
+  CHECK_REFUSED(SetupErrorKind::unsupported, (detail::resolve_faces(mesh_ref(mesh), boundary, "mixed")));
 }

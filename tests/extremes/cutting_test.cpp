@@ -61,7 +61,7 @@ void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
       (t.state(e) == ElementState::supported  ? constrained
        : t.state(e) == ElementState::detached ? detached
                                               : removed) += p.mass(e);
-    for (const Fragment& piece : t.detached_fragments()) {
+    for (const detail::Fragment& piece : t.detached_fragments()) {
       for (const Index e : piece.elements)
         if (!t.is_removed(e)) pieces += p.mass(e);
       all.detached = std::max(all.detached, static_cast<int>(t.detached_fragments().size()));

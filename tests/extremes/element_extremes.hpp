@@ -134,7 +134,7 @@ void check_defects() {
   bad.positions[corner] = bad.position(bad.elements[0][1]);
   refused_as(bad, constrained, SetupErrorKind::duplicate_node);
   bad = good;
-  reorient(bad, {3});
+  detail::reorient(bad, {3});
   refused_as(bad, constrained, SetupErrorKind::inverted_element);
   bad = good;
   bad.positions[4][1] = std::numeric_limits<double>::quiet_NaN();
@@ -153,7 +153,7 @@ void check_small_bodies() {
   const LinearElastic tissue{5e3, 0.3, 1000.0};
   const Mesh<E> good = box_of<E>({0.1, 0.08, 0.06}, {3, 2, 2});
   Mesh<E> inverted = good;
-  reorient(inverted, {3, 4});
+  detail::reorient(inverted, {3, 4});
   SetupOptions repair;
   repair.admission.inverted = Admission::repair;
   const StaticModel<E> repaired(inverted, Scene().fix("x0").gravity({0, 0, -10.0}), tissue, repair);

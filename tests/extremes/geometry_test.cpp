@@ -189,7 +189,7 @@ TEST_CASE("two bricks joined by a hinge or a corner", "[extreme][B7][B8]") {
     for (bool turn : {false, true}) {
       INFO((edge ? "hinge" : "corner") << (turn ? ", rotated" : ""));
       const Mesh<Tet4> mesh = turn ? rotated(hinged_bricks(edge)) : hinged_bricks(edge);
-      REQUIRE(connected_components<Tet4>(mesh).count == 1);
+      REQUIRE(detail::connected_components<Tet4>(mesh).count == 1);
       REQUIRE(mesh.node_count() == (edge ? 69 : 71));
       const Scene scene = Scene().fix(brick().find_group("x0")->nodes);
       check_refused_by_all(mesh, scene);

@@ -41,7 +41,7 @@ struct Blocks {
       if (cube_of[e] == cube)
         for (const NodeId i : mesh.elements[e])
           if (wanted(mesh.position(i))) all.push_back(i);
-    sort_unique(all);
+    detail::sort_unique(all);
     return all;
   }
 };
@@ -117,8 +117,8 @@ void for_each_case(const std::vector<Linkage>& all, Visit visit) {
 TEST_CASE("mechanisms are refused before any factorisation, with part, joint and motion", "[extreme][B7][B8]") {
   std::map<std::string, int> count;
   for_each_case(linkages, [&](const Linkage& l, const Blocks& b, const Mesh<Tet4>& mesh, const Scene& scene) {
-    REQUIRE(connected_components<Tet4>(mesh).count == 1);
-    REQUIRE(face_connected_parts(mesh_ref(mesh)).count == static_cast<Index>(l.corners.size()));
+    REQUIRE(detail::connected_components<Tet4>(mesh).count == 1);
+    REQUIRE(detail::face_connected_parts(mesh_ref(mesh)).count == static_cast<Index>(l.corners.size()));
     for (const PolicyName policy : extreme_policies) {
       INFO(name(policy));
       const SetupProblem p = refusal([&] { make_model(policy, mesh, scene, material); });
@@ -171,7 +171,7 @@ TEST_CASE("a chain of many links", "[extreme][B7]") {
     for (const NodeId i : chain.nodes(cube, [](const Vector3&) { return true; }))
       constrained[static_cast<std::size_t>(i)] = 7;
   };
-  const auto found = [&] { return find_mechanism(mesh_ref(chain.mesh), constrained).has_value(); };
+  const auto found = [&] { return detail::find_mechanism(mesh_ref(chain.mesh), constrained).has_value(); };
   hold(0);
   CHECK(found());
   hold(59);

@@ -42,7 +42,8 @@ double smallest_gap(const ConvexTool& tool, const ContactSurface& surface, const
   double least = infinity;
   for (const Triangle& t : surface.triangles())
     least = std::min(
-        least, separate(points, {surface.position(t[0]), surface.position(t[1]), surface.position(t[2])}).distance);
+        least,
+        detail::separate(points, {surface.position(t[0]), surface.position(t[1]), surface.position(t[2])}).distance);
   return least - tool.radius();
 }
 
@@ -146,7 +147,7 @@ TEST_CASE("a convex tool that appears inside the body is placed outside of it", 
     placed.hull = &tool.hull();
     placed.half_length = tool.hull().extent();
     placed.target_rotation = turn;
-    place_beside(placed, surface, state.position - origin);
+    detail::place_beside(placed, surface, state.position - origin);
     const double gap = smallest_gap(tool, surface, placed.proxy, placed.rotation);
     deepest = std::min(deepest, gap);
     touching += gap < 1e-6;

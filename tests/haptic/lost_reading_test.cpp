@@ -99,7 +99,7 @@ TEST_CASE("a grasp begins with a press of the button, not with a reading that re
 TEST_CASE("an invalid reading after the surface was lost lifts the tool", "[haptic][servo]") {
   test::Pad pad = test::make_pad("z1");
   const ContactSurface& surface = pad.contact_surface();
-  ToolInput input(0, false, 0);
+  detail::ToolInput input(0, false, 0);
   ContactTool tool;
   tool.radius = test::sphere_radius;
   ToolState state;

@@ -14,8 +14,9 @@ using std::numbers::pi;
 
 template <class Scheme, Element E>
 auto linear_motion(const Body<E>& body, const std::vector<Index>& free, const ExplicitOptions& options = {}) {
-  return ExplicitMotion<LinearForces, Scheme>(LinearForces(assemble_stiffness<E>(body, {})), lumped_mass(body), free,
-                                              element_frequency_bound(body), options);
+  return ExplicitMotion<detail::LinearForces, Scheme>(detail::LinearForces(assemble_stiffness<E>(body, {})),
+                                                      lumped_mass(body), free, detail::element_frequency_bound(body),
+                                                      options);
 }
 
 /// Lame's mode of a cube of side 1: no change of volume, no traction on any face.
@@ -45,7 +46,7 @@ TEST_CASE("a wave in a bar with dt = dx / c equals d'Alembert's solution to roun
       linear_motion<CentralDifference>(body, dofs_where(mesh, [](const Vector3& p) { return p.x() > 1e-9; }), options);
   Scene scene;
   scene.traction("x1", Vector3(1000.0, 0.0, 0.0));
-  motion.load() = applied_load(body, extract_boundary<Hex8>(mesh), scene);
+  motion.load() = detail::applied_load(body, extract_boundary<Hex8>(mesh), scene);
   motion.require_step(dt);
 
   Index tip = -1;

@@ -66,14 +66,14 @@ struct Slope {
   double rounding() const noexcept { return 0.0; }
 };
 
-static_assert(NewtonProblem<Rosenbrock> && NewtonProblem<Barrier> && NewtonProblem<Slope>);
-static_assert(!NewtonProblem<int>);
+static_assert(detail::NewtonProblem<Rosenbrock> && detail::NewtonProblem<Barrier> && detail::NewtonProblem<Slope>);
+static_assert(!detail::NewtonProblem<int>);
 
 }  // namespace
 
 TEST_CASE("Newton's method finds the minimum of Rosenbrock's function", "[integrator][newton]") {
   Rosenbrock problem;
-  NewtonMethod newton(2);
+  detail::NewtonMethod newton(2);
   VectorX x = Eigen::Vector2d(-1.2, 1.0);
   const NewtonReport report = newton.solve(problem, x);
   CHECK(report.converged);
@@ -84,7 +84,7 @@ TEST_CASE("Newton's method finds the minimum of Rosenbrock's function", "[integr
 
 TEST_CASE("Newton's method stays inside the domain", "[integrator][newton]") {
   Barrier problem;
-  NewtonMethod newton(1);
+  detail::NewtonMethod newton(1);
   VectorX x = VectorX::Constant(1, 10.0);
   const NewtonReport report = newton.solve(problem, x);
   CHECK(problem.left);  // a step out of the domain was tried and rejected
@@ -100,7 +100,7 @@ TEST_CASE("Newton's method converges quadratically", "[integrator][newton]") {
   double error = 0.1;
   for (int k = 1; k <= 3; ++k) {
     VectorX x = VectorX::Constant(1, 0.9);
-    const NewtonReport report = NewtonMethod(1, {.maximum_iterations = k}).solve(problem, x);
+    const NewtonReport report = detail::NewtonMethod(1, {.maximum_iterations = k}).solve(problem, x);
     CHECK(report.iterations == k);
     error *= error;  // of x - log x exactly
     CHECK(std::abs(1.0 - x[0] - error) <= 1e-15);
@@ -110,18 +110,18 @@ TEST_CASE("Newton's method converges quadratically", "[integrator][newton]") {
 TEST_CASE("Newton's method stops without a minimum, and makes no step at a minimum", "[integrator][newton]") {
   Slope slope;
   VectorX x = VectorX::Zero(1);
-  const NewtonReport report = NewtonMethod(1, {.maximum_iterations = 7}).solve(slope, x);
+  const NewtonReport report = detail::NewtonMethod(1, {.maximum_iterations = 7}).solve(slope, x);
   CHECK_FALSE(report.converged);
   CHECK(report.iterations == 7);
   Barrier barrier;
   x[0] = 1.0;
-  const NewtonReport at_once = NewtonMethod(1).solve(barrier, x);
+  const NewtonReport at_once = detail::NewtonMethod(1).solve(barrier, x);
   CHECK(at_once.converged);
   CHECK(at_once.iterations == 0);
 }
 
 TEST_CASE("unusable Newton parameters are refused", "[integrator][newton][extreme]") {
-  const auto make = [](const NewtonParameters& p) { NewtonMethod newton(2, p); };
+  const auto make = [](const NewtonParameters& p) { detail::NewtonMethod newton(2, p); };
   make({.maximum_iterations = 1, .tolerance = 0.0, .maximum_halvings = 0});
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = 0}));
   CHECK_REFUSED(SetupErrorKind::bad_argument, make({.maximum_iterations = -1}));

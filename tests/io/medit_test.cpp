@@ -79,7 +79,7 @@ TEST_CASE("Medit: a text without End is read with a note, in the report of a mod
   REQUIRE(mesh.notes.size() == 1);
   CHECK_THAT(mesh.notes[0], test::contains("mesh.mesh: there is no End"));
   SetupReport report;
-  report_admission(admit<Tet4>(refine(mesh)), report);
+  detail::report_admission(admit<Tet4>(refine(mesh)), report);
   CHECK(report.has(SetupFlag::file_notes));
   for (const auto& [flag, remark] : report.remarks)
     if (flag == SetupFlag::file_notes) CHECK(remark == mesh.notes[0]);

@@ -43,7 +43,7 @@ TEST_CASE("the energy norm of the error is below the tolerance and close to the 
   for (const double condition : {2.0, 10.0, 100.0}) {
     const GivenSpectrum op(60, condition);
     const VectorX b = VectorX::LinSpaced(60, -1.0, 2.0), exact = op.k.llt().solve(b);
-    BoundedConjugateGradient solver(60);
+    detail::BoundedConjugateGradient solver(60);
     VectorX x(60);
     for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-6}) {
       const auto report = solver.solve_into(op, b, x, {200, tolerance});
@@ -60,7 +60,7 @@ TEST_CASE("the energy norm of the error is below the tolerance and close to the 
 TEST_CASE("the work is bounded, and fewer iterations leave a larger error", "[linear][bounded]") {
   const GivenSpectrum op(60, 1e4);
   const VectorX b = VectorX::Ones(60), exact = op.k.llt().solve(b);
-  BoundedConjugateGradient solver(60);
+  detail::BoundedConjugateGradient solver(60);
   VectorX x(60);
   double before = 1.0;
   for (int most = 1; most <= 8; ++most) {
@@ -75,7 +75,7 @@ TEST_CASE("the work is bounded, and fewer iterations leave a larger error", "[li
 
 TEST_CASE("zero load, non-finite load and negative curvature", "[linear][bounded]") {
   GivenSpectrum op(12, 10.0);
-  BoundedConjugateGradient solver(12);
+  detail::BoundedConjugateGradient solver(12);
   VectorX x = VectorX::Ones(12);
   const auto nothing = solver.solve_into(op, VectorX::Zero(12), x, {});
   CHECK(nothing.converged);
@@ -93,7 +93,7 @@ TEST_CASE("zero load, non-finite load and negative curvature", "[linear][bounded
 
 TEST_CASE("a bounded solve does not allocate", "[linear][bounded]") {
   const GivenSpectrum op(40, 50.0);
-  BoundedConjugateGradient solver(40);
+  detail::BoundedConjugateGradient solver(40);
   const VectorX b = VectorX::Ones(40);
   VectorX x(40);
   const testing::AllocationScope scope;

@@ -53,13 +53,13 @@ double largest_column_sum(const MatrixX& m) {
 
 TEST_CASE("the norm of an inverse is estimated from few solves", "[linear][condition]") {
   CountedSolver diagonal{VectorX::LinSpaced(50, 1.0, 50.0).asDiagonal()};
-  CHECK_THAT(inverse_norm_estimate(diagonal), WithinRel(50.0, 1e-14));
+  CHECK_THAT(detail::inverse_norm_estimate(diagonal), WithinRel(50.0, 1e-14));
   CHECK(diagonal.solves == 3);  // the signs do not change
   MatrixX bar(40, 40);          // compliance of a bar in tension, fixed at one end
   for (Index i = 0; i < 40; ++i)
     for (Index j = 0; j < 40; ++j) bar(i, j) = static_cast<double>(std::min(i, j) + 1);
   CountedSolver solver{bar};
-  CHECK_THAT(inverse_norm_estimate(solver), WithinRel(largest_column_sum(bar), 1e-14));
+  CHECK_THAT(detail::inverse_norm_estimate(solver), WithinRel(largest_column_sum(bar), 1e-14));
   CHECK(solver.solves == 3);
   testing::Random random(7);
   int most = 0;
@@ -67,7 +67,7 @@ TEST_CASE("the norm of an inverse is estimated from few solves", "[linear][condi
     MatrixX factor(30, 30);
     for (Index i = 0; i < factor.size(); ++i) factor.data()[i] = random.uniform(-1.0, 1.0);
     CountedSolver spd{factor * factor.transpose()};
-    const double exact = largest_column_sum(spd.inverse), estimate = inverse_norm_estimate(spd);
+    const double exact = largest_column_sum(spd.inverse), estimate = detail::inverse_norm_estimate(spd);
     CHECK(estimate <= exact * (1.0 + 1e-12));
     CHECK(3.0 * estimate > exact);
     most = std::max(most, spd.solves);
@@ -79,11 +79,11 @@ TEST_CASE("the probe shows the full loss of a single motion, and its place", "[l
   const SoftDiagonal op;
   SoftSolver wrong;
   CHECK(probe_error(op, wrong) < 0.02);  // the soft motion is a small part of a random solution
-  const SoftestMotion found = probe_softest_motion(op, wrong);
+  const detail::SoftestMotion found = detail::probe_softest_motion(op, wrong);
   CHECK_THAT(found.error, WithinRel(2.0 / 3.0, 1e-6));
   CHECK(found.largest == soft);
   SoftSolver right{1.0};
-  CHECK(probe_softest_motion(op, right).error <= 1e-12);
+  CHECK(detail::probe_softest_motion(op, right).error <= 1e-12);
   SoftSolver infinite{0.0};
-  CHECK(probe_softest_motion(op, infinite).error == infinity);
+  CHECK(detail::probe_softest_motion(op, infinite).error == infinity);
 }

@@ -29,7 +29,7 @@ bool is_permutation(const detail::NodeVector& order, Index n) {
 }
 
 /// Row counts of every column of the factor, by elimination on a dense pattern.
-std::vector<Index> dense_counts(const NodeGraph& g, const detail::NodeVector& order) {
+std::vector<Index> dense_counts(const detail::NodeGraph& g, const detail::NodeVector& order) {
   const Index n = order.size();
   detail::NodeVector position(n);
   for (Index i = 0; i < n; ++i) position[order[i]] = static_cast<NodeId>(i);
@@ -55,12 +55,12 @@ std::vector<Index> dense_counts(const NodeGraph& g, const detail::NodeVector& or
 TEST_CASE("nested dissection orders every node once, kept ones last", "[linear][ordering]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
-    const NodeGraph g = node_graph(c.lower, c.layout);
-    CHECK(is_permutation(nested_dissection(g), g.nodes()));
+    const detail::NodeGraph g = detail::node_graph(c.lower, c.layout);
+    CHECK(is_permutation(detail::nested_dissection(g), g.nodes()));
     DofLayout layout = c.layout;
     for (Index dof = 0; dof < c.lower.rows(); dof += 7) layout.kept.push_back(dof);
-    const NodeGraph with_kept = node_graph(c.lower, layout);
-    const detail::NodeVector order = nested_dissection(with_kept);
+    const detail::NodeGraph with_kept = detail::node_graph(c.lower, layout);
+    const detail::NodeVector order = detail::nested_dissection(with_kept);
     REQUIRE(is_permutation(order, with_kept.nodes()));
     bool in_kept = false, sorted = true;
     for (NodeId v : order) {
@@ -73,13 +73,13 @@ TEST_CASE("nested dissection orders every node once, kept ones last", "[linear][
 
 TEST_CASE("the dofs of a node stay together", "[linear][ordering]") {
   const SparseCase c = sphere_case(3);
-  const CholeskyAnalysis analysis(c.lower, c.layout);
+  const detail::CholeskyAnalysis analysis(c.lower, c.layout);
   const detail::NodeVector& place = analysis.tree().place_of_dof;
   for (std::size_t dof = 1; dof < c.layout.node_of_dof.size(); ++dof)
     if (c.layout.node_of_dof[dof] == c.layout.node_of_dof[dof - 1])
       CHECK(place[static_cast<Index>(dof)] == place[static_cast<Index>(dof) - 1] + 1);
   // Without a layout, nodes are found from the pattern.
-  const NodeGraph given = node_graph(c.lower, c.layout), found = node_graph(c.lower, {});
+  const detail::NodeGraph given = detail::node_graph(c.lower, c.layout), found = detail::node_graph(c.lower, {});
   CHECK(found.nodes() <= given.nodes());
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("a separator separates", "[linear][ordering]") {
   for (bool coordinates : {true, false}) {
     SparseCase c = sphere_case(5);
     if (!coordinates) c.layout.positions.clear();
-    const NodeGraph g = node_graph(c.lower, c.layout);
+    const detail::NodeGraph g = detail::node_graph(c.lower, c.layout);
     detail::PartLists lists;
     lists.graph = &g;
     lists.place.assign(g.nodes(), {});
@@ -160,7 +160,7 @@ TEST_CASE("a flow finds the smallest set between two ends", "[linear][ordering]"
     constexpr NodeId n = 13, first = 3, last = 10;
     const double density = random.uniform(0.1, 0.5);
     std::vector<unsigned> near(n, 0);
-    NodeGraph g;
+    detail::NodeGraph g;
     for (NodeId a = 0; a < n; ++a)
       for (NodeId b = a + 1; b < n; ++b)
         if ((a >= first || b < last) && random.uniform() < density) near[a] |= 1u << b, near[b] |= 1u << a;
@@ -221,13 +221,13 @@ TEST_CASE("the elimination order does not depend on the threads", "[linear][orde
   for (bool coordinates : {true, false}) {
     SparseCase c = sphere_case(13);
     if (!coordinates) c.layout.positions.clear();
-    const NodeGraph g = node_graph(c.lower, c.layout);
-    const detail::NodeVector one = nested_dissection(g);
+    const detail::NodeGraph g = detail::node_graph(c.lower, c.layout);
+    const detail::NodeVector one = detail::nested_dissection(g);
     REQUIRE(is_permutation(one, g.nodes()));
     for (int threads : {2, 3, 7}) {
       SetupLimits limits;
       limits.threads = threads;
-      const detail::NodeVector several = nested_dissection(g, limits);
+      const detail::NodeVector several = detail::nested_dissection(g, limits);
       CHECK(std::equal(one.begin(), one.end(), several.begin(), several.end()));
     }
   }
@@ -235,14 +235,14 @@ TEST_CASE("the elimination order does not depend on the threads", "[linear][orde
 
 TEST_CASE("a dissection by threads can be cancelled", "[linear][ordering][threads]") {
   const SparseCase c = sphere_case(13);
-  const NodeGraph g = node_graph(c.lower, c.layout);
+  const detail::NodeGraph g = detail::node_graph(c.lower, c.layout);
   for (int threads : {1, 3})
     for (int last : {1, 2}) {
       int calls = 0;
       SetupLimits limits;
       limits.threads = threads;
       limits.progress = [&](const Progress&) { return ++calls < last; };
-      if (threads == 1 || last == 1) CHECK_REFUSED(SetupErrorKind::cancelled, nested_dissection(g, limits));
+      if (threads == 1 || last == 1) CHECK_REFUSED(SetupErrorKind::cancelled, detail::nested_dissection(g, limits));
       CHECK(calls <= last);
     }
 }
@@ -250,9 +250,9 @@ TEST_CASE("a dissection by threads can be cancelled", "[linear][ordering][thread
 TEST_CASE("row counts equal those of dense elimination", "[linear][ordering]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
-    const NodeGraph g = node_graph(c.lower, c.layout);
+    const detail::NodeGraph g = detail::node_graph(c.lower, c.layout);
     if (g.nodes() > 200) continue;
-    const detail::EliminationTree t = detail::elimination_tree(g, nested_dissection(g));
+    const detail::EliminationTree t = detail::elimination_tree(g, detail::nested_dissection(g));
     const std::vector<Index> expected = dense_counts(g, t.order);
     for (Index j = 0; j < g.nodes(); ++j) CHECK(t.rows[j] == expected[static_cast<std::size_t>(j)]);
     for (Index j = 0; j < g.nodes(); ++j) CHECK((t.parent[j] < 0 || t.parent[j] > j));
@@ -266,7 +266,7 @@ TEST_CASE("fronts cover the matrix and have the right rows", "[linear][ordering]
     for (bool keep : {false, true}) {
       if (keep)
         for (Index dof = 1; dof < c.lower.rows(); dof += 5) layout.kept.push_back(dof);
-      const CholeskyAnalysis analysis(c.lower, layout);
+      const detail::CholeskyAnalysis analysis(c.lower, layout);
       Index pivots = 0;
       for (const detail::Front& f : analysis.tree().fronts) {
         CHECK(f.first == pivots);
@@ -287,16 +287,16 @@ TEST_CASE("fronts cover the matrix and have the right rows", "[linear][ordering]
 
 TEST_CASE("the elimination order keeps fill low", "[linear][ordering]") {
   const SparseCase c = sphere_case(6);
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
+  Eigen::SimplicialLLT<detail::SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
   minimum_degree.analyzePattern(c.lower);
   minimum_degree.factorize(c.lower);
-  const auto reference = static_cast<double>(SparseMatrix(minimum_degree.matrixL()).nonZeros());
-  CHECK(CholeskyAnalysis(c.lower, c.layout).nonzeros() <= 1.15 * reference);
-  CHECK(CholeskyAnalysis(c.lower, {}).nonzeros() <= 1.4 * reference);
+  const auto reference = static_cast<double>(detail::SparseMatrix(minimum_degree.matrixL()).nonZeros());
+  CHECK(detail::CholeskyAnalysis(c.lower, c.layout).nonzeros() <= 1.15 * reference);
+  CHECK(detail::CholeskyAnalysis(c.lower, {}).nonzeros() <= 1.4 * reference);
 }
 
 TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
-  const SparseMatrix lower = sphere_stiffness(1);
+  const detail::SparseMatrix lower = sphere_stiffness(1);
   const auto n = static_cast<std::size_t>(lower.rows());
   DofLayout layout;
   SECTION("too few nodes") {
@@ -322,5 +322,5 @@ TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
   SECTION("kept beyond the end") {
     layout.kept = {lower.rows()};
   }
-  CHECK_REFUSED(SetupErrorKind::bad_argument, CholeskyAnalysis(lower, layout));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, detail::CholeskyAnalysis(lower, layout));
 }

@@ -30,11 +30,11 @@ std::vector<VectorX> results_with(const SetupThreads& threads) {
   const SparseCase& c = large_case();
   SetupLimits limits;
   limits.threads = threads;
-  SparseCholesky whole(CholeskyAnalysis(c.lower, c.layout), c.lower, limits);
+  SparseCholesky whole(detail::CholeskyAnalysis(c.lower, c.layout), c.lower, limits);
   DofLayout layout = c.layout;
   layout.kept = first_dofs(90);
   MatrixX schur;
-  SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, limits);
+  SparseCholesky interior = SparseCholesky::interior(detail::CholeskyAnalysis(c.lower, layout), c.lower, schur, limits);
   VectorX b(c.lower.rows()), x(c.lower.rows());
   for (Index i = 0; i < b.size(); ++i) b[i] = std::sin(static_cast<double>(i));
   whole.solve_into(b, x);
@@ -54,7 +54,7 @@ bool same_bits(const std::vector<VectorX>& a, const std::vector<VectorX>& b) {
 }  // namespace
 
 TEST_CASE("a factor has the same bits for any number of threads", "[linear][threads]") {
-  const CholeskyAnalysis analysis(large_case().lower, large_case().layout);
+  const detail::CholeskyAnalysis analysis(large_case().lower, large_case().layout);
   REQUIRE(analysis.flops() > 7e8);  // enough work for seven threads
   const std::vector<VectorX> one = results_with(1);
   for (const int threads : {2, 3, 7})
@@ -64,7 +64,7 @@ TEST_CASE("a factor has the same bits for any number of threads", "[linear][thre
 }
 
 TEST_CASE("tasks of a factorisation cover all fronts once, children first", "[linear][threads]") {
-  const CholeskyAnalysis analysis(large_case().lower, large_case().layout);
+  const detail::CholeskyAnalysis analysis(large_case().lower, large_case().layout);
   const detail::FrontTree& tree = analysis.tree();
   const detail::FrontTasks division = detail::divide_fronts(tree, tree.fronts.size());
   REQUIRE(division.tasks.size() > 20);
@@ -86,7 +86,7 @@ TEST_CASE("tasks of a factorisation cover all fronts once, children first", "[li
 
 TEST_CASE("a factorisation by threads is refused and cancelled as by one", "[linear][threads]") {
   const SparseCase& c = large_case();
-  const CholeskyAnalysis analysis(c.lower, c.layout);
+  const detail::CholeskyAnalysis analysis(c.lower, c.layout);
   SetupLimits limits;
   limits.threads = 3;
   SECTION("memory") {

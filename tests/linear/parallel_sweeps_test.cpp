@@ -28,13 +28,13 @@ struct Throwing {
 
 /// Two bodies without a connection: the tree has two roots. Nothing is known about the dofs.
 SparseCase two_bodies() {
-  const SparseMatrix& one = large_case().lower;
+  const detail::SparseMatrix& one = large_case().lower;
   const Index n = one.rows();
   std::vector<Eigen::Triplet<double, Index>> entries;
   for (Index j = 0; j < n; ++j)
-    for (SparseMatrix::InnerIterator it(one, j); it; ++it)
+    for (detail::SparseMatrix::InnerIterator it(one, j); it; ++it)
       for (const Index at : {Index{0}, n}) entries.emplace_back(at + it.row(), at + j, it.value());
-  SparseCase c{"two bodies", SparseMatrix(2 * n, 2 * n), {}};
+  SparseCase c{"two bodies", detail::SparseMatrix(2 * n, 2 * n), {}};
   c.lower.setFromTriplets(entries.begin(), entries.end());
   return c;
 }
@@ -79,11 +79,12 @@ TEST_CASE("a solve has the same bits for any number of threads", "[linear][threa
   std::vector<SparseCase> cases{large_case(), two_bodies()};
   for (SparseCase& c : cases) {
     INFO(c.name);
-    const SparseCholesky whole(CholeskyAnalysis(c.lower, c.layout), c.lower, {});
+    const SparseCholesky whole(detail::CholeskyAnalysis(c.lower, c.layout), c.lower, {});
     REQUIRE(detail::ParallelSweeps::are_worthwhile(whole.analysis().tree(), 2));
     c.layout.kept = every(97, c.lower.rows());
     MatrixX schur;
-    const SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, c.layout), c.lower, schur, {});
+    const SparseCholesky interior =
+        SparseCholesky::interior(detail::CholeskyAnalysis(c.lower, c.layout), c.lower, schur, {});
     const Solutions one = solve_on(1, whole, interior);
     for (const int threads : {2, 3, 7})
       for (int repeat = 0; repeat < 3; ++repeat) CHECK(solve_on(threads, whole, interior) == one);

@@ -9,7 +9,7 @@ using namespace test;
 namespace {
 
 /// The entry (j, j) of a lower half.
-double& diagonal(SparseMatrix& lower, Index j) {
+double& diagonal(detail::SparseMatrix& lower, Index j) {
   return lower.coeffRef(j, j);
 }
 
@@ -18,13 +18,13 @@ double& diagonal(SparseMatrix& lower, Index j) {
 TEST_CASE("a repeated factorisation equals a single one to the last bit", "[linear][repeated_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
-    const CholeskyAnalysis analysis(c.lower, c.layout);
-    RepeatedCholesky repeated(analysis);
+    const detail::CholeskyAnalysis analysis(c.lower, c.layout);
+    detail::RepeatedCholesky repeated(analysis);
     CHECK_FALSE(repeated.ready());
     VectorX x(repeated.size());
     CHECK_FALSE(repeated.solve_into(x, x).converged);
     for (const double factor : {1.0, 3.0, 1.0}) {
-      const SparseMatrix scaled = factor * c.lower;
+      const detail::SparseMatrix scaled = factor * c.lower;
       REQUIRE(repeated.factorise(scaled));
       SparseCholesky single(analysis, scaled, {});
       const VectorX b = random_vector(repeated.size(), 5);
@@ -39,11 +39,11 @@ TEST_CASE("a repeated factorisation equals a single one to the last bit", "[line
 TEST_CASE("a repeated factorisation reports a failure and then accepts the next matrix",
           "[linear][repeated_cholesky]") {
   const SparseCase c = sphere_case(3);
-  const CholeskyAnalysis analysis(c.lower, c.layout);
-  RepeatedCholesky repeated(analysis);
+  const detail::CholeskyAnalysis analysis(c.lower, c.layout);
+  detail::RepeatedCholesky repeated(analysis);
   const Index last = c.lower.rows() - 1;
   for (const double bad : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), infinity}) {
-    SparseMatrix broken = c.lower;
+    detail::SparseMatrix broken = c.lower;
     diagonal(broken, last / 2) = bad;
     CHECK_FALSE(repeated.factorise(broken));
     CHECK_FALSE(repeated.ready());
@@ -62,7 +62,7 @@ TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_ch
     return;
   }
   const SparseCase c = sphere_case(3);
-  RepeatedCholesky repeated(CholeskyAnalysis(c.lower, c.layout));
+  detail::RepeatedCholesky repeated(detail::CholeskyAnalysis(c.lower, c.layout));
   VectorX x = random_vector(repeated.size(), 9);
   const testing::AllocationScope scope;
   const bool factorised = repeated.factorise(c.lower);
@@ -75,8 +75,8 @@ TEST_CASE("factorising again and solving do not allocate", "[linear][repeated_ch
 TEST_CASE("a factor read in single precision is a preconditioner", "[linear][repeated_cholesky]") {
   for (const SparseCase& c : sparse_cases()) {
     INFO(c.name);
-    const CholeskyAnalysis analysis(c.lower, c.layout);
-    RepeatedCholesky exact(analysis), single(analysis, {}, FactorScalar::single_precision);
+    const detail::CholeskyAnalysis analysis(c.lower, c.layout);
+    detail::RepeatedCholesky exact(analysis), single(analysis, {}, detail::FactorScalar::single_precision);
     CHECK(single.bytes() > exact.bytes());
     REQUIRE(exact.factorise(c.lower));
     REQUIRE(single.factorise(c.lower));
@@ -93,7 +93,7 @@ TEST_CASE("a factor read in single precision is a preconditioner", "[linear][rep
     const VectorX b = random_vector(exact.size(), 5);
     exact.solve_into(b, x);
     single.solve_into(b, y);
-    VectorX left = b - SparseMatrix(c.lower.selfadjointView<Eigen::Lower>()) * y, more(y.size());
+    VectorX left = b - detail::SparseMatrix(c.lower.selfadjointView<Eigen::Lower>()) * y, more(y.size());
     const double before = (x - y).norm();
     single.solve_into(left, more);
     y += more;

@@ -25,7 +25,7 @@ S make(const MatrixX& m) {
 template <class S>
 constexpr testing::SolverClaims claims() {
   if constexpr (std::same_as<S, DenseInverse<float>>) return {1e-6, true};
-  if constexpr (std::same_as<S, DenseConjugateGradient>) return {1e-11, false};
+  if constexpr (std::same_as<S, detail::DenseConjugateGradient>) return {1e-11, false};
   return {1e-13, true};
 }
 
@@ -47,7 +47,7 @@ double worst_error(const MatrixX& m, S& solver) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("solvers pass the law suite and agree with long double", "[linear][laws]", SparseCholesky,
-                   DenseCholesky, DenseInverse<double>, DenseInverse<float>, DenseConjugateGradient) {
+                   DenseCholesky, DenseInverse<double>, DenseInverse<float>, detail::DenseConjugateGradient) {
   using S = TestType;
   const MatrixX k = full(sphere_stiffness(2));
   S solver = make<S>(k);
@@ -76,7 +76,7 @@ TEMPLATE_TEST_CASE("solvers pass the law suite and agree with long double", "[li
 }
 
 TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linear][threads]", SparseCholesky,
-                   DenseConjugateGradient, DenseInverse<double>) {
+                   detail::DenseConjugateGradient, DenseInverse<double>) {
   using S = TestType;
   const MatrixX k = full(sphere_stiffness(2));
   S original = make<S>(k);
@@ -97,7 +97,7 @@ TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linea
 }
 
 TEST_CASE("a block of right-hand sides equals single solves", "[linear]") {
-  const SparseMatrix lower = sphere_stiffness(2);
+  const detail::SparseMatrix lower = sphere_stiffness(2);
   SparseCholesky solver(lower, {});
   testing::Random random(31);
   MatrixX b(lower.rows(), 13);
@@ -126,8 +126,8 @@ TEST_CASE("a factorisation can be cancelled", "[linear]") {
 TEST_CASE("conjugate gradients report when they do not converge", "[linear][cg]") {
   SECTION("too few iterations") {
     const MatrixX k = full(sphere_stiffness(2));
-    const DenseOperator op(k);
-    ConjugateGradientSolver solver(op.size(), {1e-12, 5});
+    const detail::DenseOperator op(k);
+    detail::ConjugateGradientSolver solver(op.size(), {1e-12, 5});
     VectorX x(op.size());
     const VectorX b = VectorX::Ones(op.size());
     const SolveReport report = solver.solve_into(op, b, x);
@@ -137,8 +137,8 @@ TEST_CASE("conjugate gradients report when they do not converge", "[linear][cg]"
   }
   SECTION("the tolerance is below what rounding allows: the backward error decides") {
     const MatrixX m = with_condition(60, 1e14);
-    const DenseOperator op(m);
-    ConjugateGradientSolver solver(op.size(), {1e-17, 0});
+    const detail::DenseOperator op(m);
+    detail::ConjugateGradientSolver solver(op.size(), {1e-17, 0});
     VectorX x(op.size());
     const VectorX b = VectorX::Ones(op.size());
     const SolveReport report = solver.solve_into(op, b, x);
@@ -150,8 +150,8 @@ TEST_CASE("conjugate gradients report when they do not converge", "[linear][cg]"
     MatrixX m = full(sphere_stiffness(1));
     m.diagonal().array() -= 0.5 * m.diagonal().maxCoeff();
     REQUIRE(Eigen::LLT<MatrixX>(m).info() != Eigen::Success);
-    const DenseOperator op(m);
-    ConjugateGradientSolver solver(op.size());
+    const detail::DenseOperator op(m);
+    detail::ConjugateGradientSolver solver(op.size());
     VectorX x(op.size());
     const VectorX b = VectorX::Ones(op.size());
     const SolveReport report = solver.solve_into(op, b, x);
@@ -159,21 +159,21 @@ TEST_CASE("conjugate gradients report when they do not converge", "[linear][cg]"
   }
   SECTION("NaN in the load or in the matrix") {
     MatrixX m = full(sphere_stiffness(1));
-    ConjugateGradientSolver solver(m.rows());
+    detail::ConjugateGradientSolver solver(m.rows());
     VectorX b = VectorX::Ones(m.rows()), x(m.rows());
     b[3] = std::numeric_limits<double>::quiet_NaN();
-    CHECK_FALSE(solver.solve_into(DenseOperator(m), b, x).converged);
+    CHECK_FALSE(solver.solve_into(detail::DenseOperator(m), b, x).converged);
     m(4, 2) = m(2, 4) = std::numeric_limits<double>::quiet_NaN();
-    CHECK_FALSE(solver.solve_into(DenseOperator(m), VectorX::Ones(m.rows()), x).converged);
+    CHECK_FALSE(solver.solve_into(detail::DenseOperator(m), VectorX::Ones(m.rows()), x).converged);
     b[3] = infinity;
-    CHECK_FALSE(solver.solve_into(DenseOperator(full(sphere_stiffness(1))), b, x).converged);
+    CHECK_FALSE(solver.solve_into(detail::DenseOperator(full(sphere_stiffness(1))), b, x).converged);
   }
 }
 
 TEST_CASE("a converged residual is the true one, not the recursive one", "[linear][cg]") {
   const MatrixX m = with_condition(80, 1e4);
-  const DenseOperator op(m);
-  ConjugateGradientSolver solver(op.size(), {1e-10, 2000});
+  const detail::DenseOperator op(m);
+  detail::ConjugateGradientSolver solver(op.size(), {1e-10, 2000});
   VectorX x(op.size());
   const VectorX b = VectorX::Ones(op.size());
   const SolveReport report = solver.solve_into(op, b, x);
@@ -185,7 +185,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
   for (double condition : {1.0, 1e3, 1e6, 1e10, 1e13}) {
     const MatrixX m = condition == 1.0 ? MatrixX(MatrixX::Identity(40, 40)) : with_condition(40, condition);
     DenseCholesky solver(m, {});
-    const double estimate = m.cwiseAbs().colwise().sum().maxCoeff() * inverse_norm_estimate(solver);
+    const double estimate = m.cwiseAbs().colwise().sum().maxCoeff() * detail::inverse_norm_estimate(solver);
     const double exact = exact_condition(m);
     INFO(condition << ": exact " << exact << ", estimated " << estimate);
     CHECK(estimate <= 1.01 * exact * (1.0 + 1e-15 * exact));  // a lower bound up to rounding
@@ -194,15 +194,15 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
   for (double condition : {1e3, 1e6, 1e10}) {
     const MatrixX m = with_condition(40, condition);
     DenseCholesky solver(m, {});
-    const double estimate = condition_by_iteration(DenseOperator(m), solver);
+    const double estimate = detail::condition_by_iteration(detail::DenseOperator(m), solver);
     INFO(condition << ": estimated " << estimate << " by iteration");
     CHECK(estimate <= 1.01 * condition);
     CHECK(estimate >= 0.1 * condition);
   }
-  const SparseMatrix lower = sphere_stiffness(2);
+  const detail::SparseMatrix lower = sphere_stiffness(2);
   const MatrixX k = full(lower);
   SparseCholesky solver(lower, {});
-  const double estimate = k.cwiseAbs().colwise().sum().maxCoeff() * inverse_norm_estimate(solver);
+  const double estimate = k.cwiseAbs().colwise().sum().maxCoeff() * detail::inverse_norm_estimate(solver);
   const double ratio = estimate / exact_condition(k);
   CHECK(ratio <= 1.0 + 1e-9);
   CHECK(ratio >= 0.1);
@@ -223,5 +223,5 @@ TEST_CASE("the probe error equals the error", "[linear][condition]") {
     }
   } broken{k.rows()};
   CHECK(probe_error(op_of(k), broken) == infinity);
-  CHECK_FALSE(std::isfinite(inverse_norm_estimate(broken)));
+  CHECK_FALSE(std::isfinite(detail::inverse_norm_estimate(broken)));
 }

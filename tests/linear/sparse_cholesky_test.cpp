@@ -12,11 +12,11 @@ using namespace test;
 namespace {
 
 SparseCholesky factored(const SparseCase& c) {
-  return {CholeskyAnalysis(c.lower, c.layout), c.lower, {}};
+  return {detail::CholeskyAnalysis(c.lower, c.layout), c.lower, {}};
 }
 
 /// Backward error |b - K x| / (|K| |x| + |b|) in maximum norms.
-double residual(const SparseMatrix& lower, const VectorX& b, const VectorX& x) {
+double residual(const detail::SparseMatrix& lower, const VectorX& b, const VectorX& x) {
   const MatrixX k = full(lower);
   return largest(b - k * x) / (k.cwiseAbs().rowwise().sum().maxCoeff() * largest(x) + largest(b));
 }
@@ -54,7 +54,7 @@ TEST_CASE("the sparse solver passes the law suite of solvers", "[linear][sparse_
   SparseCholesky solver = factored(c);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, {1e-13, true})) == "");
   for (double unit : {1e-12, 1e12}) {
-    SparseCholesky scaled(SparseMatrix(unit * c.lower), {});
+    SparseCholesky scaled(detail::SparseMatrix(unit * c.lower), {});
     const VectorX b = random_vector(k.rows(), 9), truth = exact_solution(unit * k, b);
     VectorX x(k.rows());
     scaled.solve_into(b, x);
@@ -64,7 +64,7 @@ TEST_CASE("the sparse solver passes the law suite of solvers", "[linear][sparse_
 
 TEST_CASE("a large front is factorised in panels", "[linear][sparse_cholesky]") {
   const Index n = 700;  // several panels, and more rows than the unpacked kernels take
-  const SparseMatrix lower = lower_half(with_condition(n, 1e4));
+  const detail::SparseMatrix lower = lower_half(with_condition(n, 1e4));
   SparseCholesky solver(lower, {});
   CHECK(solver.analysis().front_count() == 1);
   CHECK(solver.factor_nonzeros() == n * (n + 1) / 2);
@@ -77,7 +77,7 @@ TEST_CASE("a large front is factorised in panels", "[linear][sparse_cholesky]") 
   DofLayout layout;  // and with rows below it
   for (Index i = 0; i < 250; ++i) layout.kept.push_back(i);
   MatrixX schur;
-  SparseCholesky::interior(CholeskyAnalysis(lower, layout), lower, schur, {});
+  SparseCholesky::interior(detail::CholeskyAnalysis(lower, layout), lower, schur, {});
   const MatrixX k = full(lower);
   const MatrixX expected =
       k.topLeftCorner(250, 250) -
@@ -91,7 +91,7 @@ TEST_CASE("kept dofs: the Schur complement is exact", "[linear][sparse_cholesky]
     const Index n = c.lower.rows();
     DofLayout layout = c.layout;
     layout.kept = some_dofs(n);
-    const CholeskyAnalysis analysis(c.lower, layout);
+    const detail::CholeskyAnalysis analysis(c.lower, layout);
     MatrixX schur;
     SparseCholesky interior = SparseCholesky::interior(analysis, c.lower, schur, {});
     const auto k = static_cast<Index>(layout.kept.size());
@@ -170,22 +170,22 @@ TEST_CASE("a block of right-hand sides equals single solves (sparse)", "[linear]
 
 TEST_CASE("new values can be factorised on an analysed pattern", "[linear][sparse_cholesky]") {
   const SparseCase c = sphere_case(3);
-  const CholeskyAnalysis analysis(c.lower, c.layout);
-  SparseMatrix other = c.lower;
+  const detail::CholeskyAnalysis analysis(c.lower, c.layout);
+  detail::SparseMatrix other = c.lower;
   for (Index j = 0; j < other.cols(); ++j) other.coeffRef(j, j) *= 1.5;
   const VectorX b = random_vector(other.rows(), 8);
   VectorX reused(b.size()), fresh(b.size()), again(b.size());
   SparseCholesky(analysis, c.lower, {}).solve_into(b, again);
   SparseCholesky(analysis, other, {}).solve_into(b, reused);
-  SparseCholesky(CholeskyAnalysis(other, c.layout), other, {}).solve_into(b, fresh);
+  SparseCholesky(detail::CholeskyAnalysis(other, c.layout), other, {}).solve_into(b, fresh);
   CHECK(reused == fresh);  // to the last bit, and in every run
   CHECK(reused != again);
   CHECK(analysis.fits(other));
-  const SparseMatrix wrong = sphere_stiffness(2);
+  const detail::SparseMatrix wrong = sphere_stiffness(2);
   CHECK_FALSE(analysis.fits(wrong));
   CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(analysis, wrong, {}));
-  CHECK_FALSE(CholeskyAnalysis().fits(wrong));
-  CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(CholeskyAnalysis(), wrong, {}));
+  CHECK_FALSE(detail::CholeskyAnalysis().fits(wrong));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(detail::CholeskyAnalysis(), wrong, {}));
 }
 
 TEST_CASE("sparse Cholesky: copies solve simultaneously", "[linear][sparse_cholesky][threads]") {
@@ -211,7 +211,7 @@ TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
   layout.kept = some_dofs(n);
   MatrixX schur;
   SparseCholesky solver = factored(c);
-  SparseCholesky interior = SparseCholesky::interior(CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
+  SparseCholesky interior = SparseCholesky::interior(detail::CholeskyAnalysis(c.lower, layout), c.lower, schur, {});
   const VectorX b = random_vector(n, 6);
   VectorX x(n), load(interior.kept());
   const std::vector<Index> loaded{3, 77}, wanted{5, 6};
@@ -228,7 +228,7 @@ TEST_CASE("solves do not allocate", "[linear][sparse_cholesky][realtime]") {
 
 TEST_CASE("limits of a factorisation", "[linear][sparse_cholesky]") {
   const SparseCase c = sphere_case(4);
-  const CholeskyAnalysis analysis(c.lower, c.layout);
+  const detail::CholeskyAnalysis analysis(c.lower, c.layout);
   SetupLimits limits;
   limits.memory = static_cast<std::size_t>(analysis.peak_bytes()) - 1;
   CHECK_REFUSED(SetupErrorKind::too_large, SparseCholesky(analysis, c.lower, limits));
@@ -236,7 +236,7 @@ TEST_CASE("limits of a factorisation", "[linear][sparse_cholesky]") {
   CHECK_NOTHROW(SparseCholesky(analysis, c.lower, limits));
   DofLayout layout = c.layout;
   layout.kept = some_dofs(c.lower.rows());
-  const CholeskyAnalysis with_kept(c.lower, layout);
+  const detail::CholeskyAnalysis with_kept(c.lower, layout);
   MatrixX schur;
   limits.memory = static_cast<std::size_t>(with_kept.interior_peak_bytes()) - 1;
   CHECK_REFUSED(SetupErrorKind::too_large, SparseCholesky::interior(with_kept, c.lower, schur, limits));

@@ -80,7 +80,7 @@ TEST_CASE("an inverse has the same bits for any number of threads", "[linear][th
   const MatrixX matrix = factor * factor.transpose() + 10.0 * MatrixX::Identity(900, 900);
   const auto inverse = [&](const SetupThreads& threads) {
     MatrixX m = matrix;
-    SpdInverse::invert(m, 1e-15, "not positive definite", threads);
+    detail::SpdInverse::invert(m, 1e-15, "not positive definite", threads);
     return m;
   };
   const MatrixX one = inverse(1);

@@ -16,7 +16,7 @@ namespace {
 
 template <Element E>
 double volume_of(const ElementNodes<E>& x) {
-  return shape_volumes<E>(x).sum();
+  return detail::shape_volumes<E>(x).sum();
 }
 
 /// A straight element with displaced nodes, so that its edges are curved.
@@ -36,8 +36,8 @@ TEST_CASE("the mass of Tet4 equals V/20 (1 + delta)", "[local][mass]") {
     Tet4Nodes<double> g;
     const double volume = closed_form_gradients<double>(x, g);
     const Eigen::Matrix4d exact = volume / 20.0 * (Eigen::Matrix4d::Ones() + Eigen::Matrix4d::Identity());
-    CHECK(largest(element_mass<Tet4>(x) - exact) <= 1e-14 * volume);
-    CHECK(largest(lumped_element_mass<Tet4>(x) - Eigen::Vector4d::Constant(volume / 4.0)) <= 1e-14 * volume);
+    CHECK(largest(detail::element_mass<Tet4>(x) - exact) <= 1e-14 * volume);
+    CHECK(largest(detail::lumped_element_mass<Tet4>(x) - Eigen::Vector4d::Constant(volume / 4.0)) <= 1e-14 * volume);
   }
 }
 
@@ -46,7 +46,7 @@ TEST_CASE("the mass of Tet10 equals the exact fractions", "[local][mass]") {
   testing::Random random(43);
   const ElementNodes<Tet10> x = some_element<Tet10>(random);
   const double unit = volume_of<Tet10>(x) / 420.0;
-  const ElementMass<Tet10> m = element_mass<Tet10>(x);
+  const detail::ElementMass<Tet10> m = detail::element_mass<Tet10>(x);
   const auto is = [&](int a, int b, double times) { return std::abs(m(a, b) - times * unit) <= 1e-12 * unit; };
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) CHECK(is(i, j, i == j ? 6.0 : 1.0));
@@ -69,24 +69,25 @@ TEST_CASE("lumped masses are positive where row sums are not", "[local][mass]") 
   SECTION("Tet10: 1/36 and 4/27; row sums -1/20 and 1/5") {
     const ElementNodes<Tet10> x = some_element<Tet10>(random);
     const double volume = volume_of<Tet10>(x);
-    const auto lumped = lumped_element_mass<Tet10>(x);
+    const auto lumped = detail::lumped_element_mass<Tet10>(x);
     for (int a = 0; a < 10; ++a) {
       CHECK_THAT(lumped[a], WithinRel(volume * (a < 4 ? 1.0 / 36.0 : 4.0 / 27.0), 1e-12));
-      CHECK_THAT(element_mass<Tet10>(x).row(a).sum(), WithinRel(volume * (a < 4 ? -1.0 / 20.0 : 1.0 / 5.0), 1e-11));
+      CHECK_THAT(detail::element_mass<Tet10>(x).row(a).sum(),
+                 WithinRel(volume * (a < 4 ? -1.0 / 20.0 : 1.0 / 5.0), 1e-11));
     }
   }
   SECTION("Hex20: 7/248 and 2/31") {
     // Closed form: the squared shape functions integrate to 28/135 at a corner, 64/135 at an edge midpoint.
     const ElementNodes<Hex20> x = some_element<Hex20>(random);
     const double volume = volume_of<Hex20>(x);
-    const auto lumped = lumped_element_mass<Hex20>(x);
+    const auto lumped = detail::lumped_element_mass<Hex20>(x);
     for (int a = 0; a < 20; ++a) CHECK_THAT(lumped[a], WithinRel(volume * (a < 8 ? 7.0 / 248.0 : 2.0 / 31.0), 1e-12));
-    CHECK(element_mass<Hex20>(x).row(0).sum() < 0.0);
+    CHECK(detail::element_mass<Hex20>(x).row(0).sum() < 0.0);
   }
   SECTION("Hex8: an eighth") {
     const ElementNodes<Hex8> x = some_element<Hex8>(random);
-    CHECK(largest(lumped_element_mass<Hex8>(x) / volume_of<Hex8>(x) - Eigen::Matrix<double, 8, 1>::Constant(0.125)) <=
-          1e-14);
+    CHECK(largest(detail::lumped_element_mass<Hex8>(x) / volume_of<Hex8>(x) -
+                  Eigen::Matrix<double, 8, 1>::Constant(0.125)) <= 1e-14);
   }
 }
 
@@ -95,16 +96,16 @@ TEMPLATE_TEST_CASE("properties of the element mass", "[local][mass]", Tet4, Tet1
   testing::Random random(53);
   for (int trial = 0; trial < 10; ++trial) {
     const ElementNodes<E> x = trial % 2 == 0 ? some_element<E>(random) : bent<E>(random);
-    const ElementMass<E> m = element_mass<E>(x);
-    const auto lumped = lumped_element_mass<E>(x);
-    const auto volumes = shape_volumes<E>(x);
+    const detail::ElementMass<E> m = detail::element_mass<E>(x);
+    const auto lumped = detail::lumped_element_mass<E>(x);
+    const auto volumes = detail::shape_volumes<E>(x);
     CHECK(largest(m - m.transpose()) <= 1e-15 * largest(m));
     CHECK(testing::symmetric_eigenvalues(m)[0] > 0.0);  // full rank
     CHECK(largest(m.rowwise().sum() - volumes) <= 1e-14 * volumes.sum());
     CHECK(lumped.minCoeff() > 0.0);
     CHECK_THAT(lumped.sum(), WithinRel(volumes.sum(), 1e-13));
     const ElementNodes<E> far = x.rowwise() + Eigen::RowVector3d(64, -128, 256);
-    CHECK(largest(element_mass<E>(far) - m) <= 1e-11 * largest(m));
-    CHECK(largest(element_mass<E>(2.0 * x) - 8.0 * m) <= 1e-14 * 8.0 * largest(m));
+    CHECK(largest(detail::element_mass<E>(far) - m) <= 1e-11 * largest(m));
+    CHECK(largest(detail::element_mass<E>(2.0 * x) - 8.0 * m) <= 1e-14 * 8.0 * largest(m));
   }
 }

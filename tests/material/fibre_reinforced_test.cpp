@@ -66,8 +66,8 @@ TEST_CASE("at zero fibre strain the stress is continuous and the stiffness jumps
 TEST_CASE("fibre directions of the mesh, one per lane", "[material][large]") {
   testing::Random random(41);
   const auto f = testing::random_deformation(fibred, random, 0.2);
-  Triple<Lanes<double, 8>> wide;
-  Tensor3<Lanes<double, 8>> wide_f;
+  Triple<detail::Lanes<double, 8>> wide;
+  Tensor3<detail::Lanes<double, 8>> wide_f;
   for (int e = 0; e < 9; ++e) wide_f.e[e] = f.e[e];
   std::vector<Vector3> fibres;
   for (int i = 0; i < 8; ++i) {

@@ -35,7 +35,7 @@ Mesh<E> shaken() {
 }
 
 template <Element E>
-Vector3 position(const Mesh<E>& mesh, const ElementPoint& p) {
+Vector3 position(const Mesh<E>& mesh, const detail::ElementPoint& p) {
   return element_nodes<E>(mesh, p.element).transpose() * E::shape(p.xi);
 }
 
@@ -44,14 +44,14 @@ Vector3 position(const Mesh<E>& mesh, const ElementPoint& p) {
 TEMPLATE_TEST_CASE("every point inside is found with its reference coordinates", "[mesh][search]", Tet4, Tet10, Hex8,
                    Hex20) {
   const Mesh<TestType> mesh = shaken<TestType>();
-  const ElementSearch<TestType> search(mesh);
+  const detail::ElementSearch<TestType> search(mesh);
   testing::Random random(9);
   for (int i = 0; i < 500; ++i) {
     const Vector3 p(random.uniform(0.005, 0.295), random.uniform(0.005, 0.195), random.uniform(0.005, 0.095));
     const auto found = search.find(p);
     REQUIRE(found);
     CHECK((position(mesh, *found) - p).norm() <= 1e-10);
-    CHECK(beyond_faces<TestType>(found->xi) <= 1e-9);
+    CHECK(detail::beyond_faces<TestType>(found->xi) <= 1e-9);
   }
   for (const Vector3& node : mesh.positions) {  // nodes are on element boundaries, which count as inside
     const auto found = search.find(node);
@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE("every point inside is found with its reference coordinates",
 
 TEST_CASE("points between a sphere and its box are in no element", "[mesh][search]") {
   const Mesh<Tet4> sphere = sphere_tet4(0.05, 4);
-  const ElementSearch<Tet4> search(sphere);
+  const detail::ElementSearch<Tet4> search(sphere);
   testing::Random random(10);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -81,13 +81,13 @@ TEST_CASE("points between a sphere and its box are in no element", "[mesh][searc
 
 TEST_CASE("the search works for a flat mesh and for a mesh of one element", "[mesh][search]") {
   const Mesh<Hex8> plate = box_hex8({1.0, 1.0, 1e-4}, {20, 20, 1});
-  CHECK(ElementSearch<Hex8>(plate).find({0.51, 0.49, 5e-5}));
+  CHECK(detail::ElementSearch<Hex8>(plate).find({0.51, 0.49, 5e-5}));
   const Mesh<Hex8> one = box_hex8({1, 1, 1}, {1, 1, 1});
-  CHECK(ElementSearch<Hex8>(one).find({0.5, 0.5, 0.5})->element == 0);
+  CHECK(detail::ElementSearch<Hex8>(one).find({0.5, 0.5, 0.5})->element == 0);
 }
 
 TEST_CASE("faces of the reference element bound it", "[mesh][search]") {
-  CHECK_THAT(beyond_faces<Tet4>({0.25, 0.25, 0.25}), Catch::Matchers::WithinAbs(-0.25 / std::sqrt(3.0), 1e-12));
-  CHECK_THAT(beyond_faces<Tet4>({-0.1, 0.3, 0.3}), Catch::Matchers::WithinAbs(0.1, 1e-12));
-  CHECK_THAT(beyond_faces<Hex20>({0.0, 1.5, 0.0}), Catch::Matchers::WithinAbs(0.5, 1e-12));
+  CHECK_THAT(detail::beyond_faces<Tet4>({0.25, 0.25, 0.25}), Catch::Matchers::WithinAbs(-0.25 / std::sqrt(3.0), 1e-12));
+  CHECK_THAT(detail::beyond_faces<Tet4>({-0.1, 0.3, 0.3}), Catch::Matchers::WithinAbs(0.1, 1e-12));
+  CHECK_THAT(detail::beyond_faces<Hex20>({0.0, 1.5, 0.0}), Catch::Matchers::WithinAbs(0.5, 1e-12));
 }

@@ -18,7 +18,7 @@ namespace {
 template <Element E>
 Vector3 group_area(const Mesh<E>& mesh, const std::string& name) {
   Vector3 sum = Vector3::Zero();
-  for (const auto& face : resolve_faces(mesh, extract_boundary<E>(mesh), name)) {
+  for (const auto& face : detail::resolve_faces(mesh, extract_boundary<E>(mesh), name)) {
     testing::FaceNodes<typename E::Face> x;
     for (int a = 0; a < E::Face::nodes; ++a)
       x.row(a) = mesh.position(Index{face.nodes[static_cast<std::size_t>(a)]}).transpose();
@@ -70,7 +70,7 @@ Mesh<Tet4> sphere_with_regions() {
 template <Element E>
 void check_rotated_round(Mesh<E> mesh) {
   const double volume = diagnose<E>(mesh).volume;
-  reorient(mesh, {0});
+  detail::reorient(mesh, {0});
   refused(SetupErrorKind::inverted_element, [&] { admit<E>(mesh); });
   AdmissionPolicy policy;
   policy.inverted = Admission::repair;

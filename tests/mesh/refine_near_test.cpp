@@ -78,7 +78,7 @@ Mesh<Tet4> jittered_box(int cells, double jitter, unsigned seed, BoxSplit split 
 /// Regions and one group of every kind: faces, elements, lines, nodes only (on the surface, a solid part), points.
 Mesh<Tet4> with_groups(Mesh<Tet4> mesh) {
   const auto boundary = extract_boundary<Tet4>(mesh);
-  Box box;
+  detail::Box box;
   for (const Vector3& x : mesh.positions) box.include(x);
   const double middle = 0.5 * (box.low[0] + box.high[0]);
   mesh.groups = {};
@@ -207,15 +207,15 @@ TEST_CASE("refinement near a sphere conforms and keeps volume, regions, fibres a
   CHECK(report.elements_after == fine.element_count());
   CHECK_THAT(report.least_quality_before, WithinRel(diagnose<Tet4>(coarse).min_quality, 1e-12));
   CHECK_THAT(report.least_quality_after, WithinRel(diagnose<Tet4>(fine).min_quality, 1e-12));
-  CHECK(report.shortest_edge == shortest_edge(fine));
+  CHECK(report.shortest_edge == detail::shortest_edge(fine));
 
   // Every element lies in the one it replaces: regions and fibres are those of the place.
   for (Index e = 0; e < fine.element_count(); ++e) {
     const Vector3 centre = element_nodes<Tet4>(fine, e).colwise().mean();
     Index from = -1;
     for (Index c = 0; c < coarse.element_count() && from < 0; ++c) {
-      const auto xi = reference_coordinates<Tet4>(element_nodes<Tet4>(coarse, c), centre);
-      if (xi && beyond_faces<Tet4>(*xi) < -1e-9) from = c;
+      const auto xi = detail::reference_coordinates<Tet4>(element_nodes<Tet4>(coarse, c), centre);
+      if (xi && detail::beyond_faces<Tet4>(*xi) < -1e-9) from = c;
     }
     REQUIRE(from >= 0);
     REQUIRE(fine.region(e) == coarse.region(from));
@@ -368,7 +368,7 @@ TEST_CASE("refinement ends at the number of nodes allowed", "[mesh][refine_near]
 
 TEST_CASE("the wanted length increases with the distance to each kind of target", "[mesh][refine_near]") {
   const Mesh<Tet4> mesh = with_groups(jittered_box(3, 0.2, 9));
-  const WantedEdge wanted{0.05, 0.6};
+  const detail::WantedEdge wanted{0.05, 0.6};
   const Vector3 a(0.1, 0.2, 1.0), b(0.9, 0.3, 0.8), c(0.5, 0.9, 0.5);
   const auto to_segment = [](const Vector3& p, const Vector3& from, const Vector3& to) {
     const double t = std::clamp((p - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
@@ -424,13 +424,13 @@ TEST_CASE("distance to a group reaches over its faces and elements", "[mesh][ref
   for (const std::string name : {"right", "right half"}) {  // a region and a group of elements
     const Mesh<Tet4> solid = refine_near(mesh, name, {.edge = 0.2});
     for (const Index e : solid.find_group("right half")->elements)
-      REQUIRE(longest_edge<Tet4>(element_nodes<Tet4>(solid, e)) <= 0.2 + 1e-9);
+      REQUIRE(detail::longest_edge<Tet4>(element_nodes<Tet4>(solid, e)) <= 0.2 + 1e-9);
   }
 }
 
 TEST_CASE("new nodes of the boundary follow a finer surface", "[mesh][refine_near]") {
   const Mesh<Tet4> coarse = sphere_tet4(1.0, 2), exact = sphere_tet4(1.0, 24);
-  CurvedSurface surface{exact.positions, {}};
+  detail::CurvedSurface surface{exact.positions, {}};
   for (const auto& f : exact.find_group("surface")->faces) surface.triangles.push_back(corners_of_face(f));
   RefineNearReport report;
   const Mesh<Tet4> fine = refine_near(coarse, "surface", {.edge = 0.15}, {.surface = &surface}, &report);
@@ -451,7 +451,7 @@ TEST_CASE("a surface that would invert elements moves nodes only as far as quali
           "[mesh][refine_near][extreme]") {
   const Mesh<Tet4> slab = box_tet4({1, 1, 0.02}, {3, 3, 1}, BoxSplit::six);
   // The surface crosses the slab's lower side: nodes of the upper side are drawn through the body.
-  CurvedSurface surface{{{-1, -1, -0.05}, {2, -1, -0.05}, {2, 2, 0.01}, {-1, 2, 0.01}}, {{0, 1, 2}, {0, 2, 3}}};
+  detail::CurvedSurface surface{{{-1, -1, -0.05}, {2, -1, -0.05}, {2, 2, 0.01}, {-1, 2, 0.01}}, {{0, 1, 2}, {0, 2, 3}}};
   RefineNearReport report;
   const Mesh<Tet4> fine =
       refine_near(slab, where::sphere({0.5, 0.5, 0.0}, 0.2), {.edge = 0.05}, {.surface = &surface}, &report);
@@ -504,7 +504,7 @@ TEST_CASE("arguments of refine_near are checked", "[mesh][refine_near]") {
     });
   }
   refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, "two", {.edge = 0.1}, {.most_nodes = 0}); });
-  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, EdgeField{}); });
+  refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, detail::EdgeField{}); });
   const auto unknown = refused(SetupErrorKind::unknown_group, [&] { refine_near(mesh, "front", {.edge = 0.1}); });
   CHECK_THAT(unknown.hint, test::contains("marked"));
   refused(SetupErrorKind::bad_argument, [&] { refine_near(mesh, std::vector<RefineTarget>{}, {.edge = 0.1}); });
@@ -715,7 +715,7 @@ std::string refine_at_random(Index count, unsigned seed, Index& not_reached) {
     for (int step = 0; step < 4 && done < count && mesh.node_count() < 250; ++step, ++done) {
       const Vector3 p = mesh.position(static_cast<NodeId>(random() % mesh.positions.size())),
                     q = mesh.position(static_cast<NodeId>(random() % mesh.positions.size()));
-      const WantedEdge wanted{std::pow(10.0, uniform(-2.0, -0.3)), uniform(0.3, 1.5)};
+      const detail::WantedEdge wanted{std::pow(10.0, uniform(-2.0, -0.3)), uniform(0.3, 1.5)};
       const std::array<RefineTarget, 4> targets{PointCloud{{p}}, Polyline{{p, q}}, where::sphere(p, uniform(0.01, 0.3)),
                                                 RefineTarget("right faces")};
       const std::size_t kinds = mesh.find_group("right faces")->nodes.empty() ? 3 : 4;  // an empty group is refused

@@ -63,9 +63,9 @@ TEST_CASE("groups of listed nodes gain all new nodes between them, in refinement
     if (block.position(i).z() < 0.0101) lower.push_back(i);
   const std::size_t groups = block.groups.all().size();
   const Scene given = Scene().fix(bottom).fix(lower).touch("z1");
-  CHECK(lists_nodes(given));
+  CHECK(detail::lists_nodes(given));
   const Scene scene = name_listed_nodes(block, given);
-  CHECK_FALSE(lists_nodes(scene));
+  CHECK_FALSE(detail::lists_nodes(scene));
   CHECK(block.groups.all().size() == groups + 2);
   const auto count_in = [](const auto& mesh, double height) {
     Index count = 0;

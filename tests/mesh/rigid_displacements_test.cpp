@@ -20,7 +20,7 @@ std::vector<std::uint8_t> free_nodes(const Mesh<Tet4>& mesh) {
 
 TEST_CASE("a free body has six rigid displacements, all without strain", "[mesh][rigid]") {
   const Mesh<Tet4> mesh = box_tet4({3, 2, 1}, {2, 2, 1});
-  const MatrixX modes = rigid_displacements(mesh, free_nodes(mesh));
+  const MatrixX modes = detail::rigid_displacements(mesh, free_nodes(mesh));
   REQUIRE(modes.cols() == 6);
   CHECK(Eigen::FullPivLU<MatrixX>(modes).rank() == 6);
   for (Index k = 0; k < 6; ++k)
@@ -37,11 +37,11 @@ TEST_CASE("rigid displacements satisfy the constraints", "[mesh][rigid]") {
   auto constrained = free_nodes(mesh);
   for (NodeId i : mesh.find_group("z0")->nodes)
     constrained[static_cast<std::size_t>(i)] = 4;  // z constrained: three are left
-  MatrixX modes = rigid_displacements(mesh, constrained);
+  MatrixX modes = detail::rigid_displacements(mesh, constrained);
   REQUIRE(modes.cols() == 3);
   for (NodeId i : mesh.find_group("z0")->nodes) CHECK(modes.row(3 * i + 2).cwiseAbs().maxCoeff() <= 1e-14);
   for (NodeId i : mesh.find_group("z0")->nodes) constrained[static_cast<std::size_t>(i)] = 7;
-  CHECK(rigid_displacements(mesh, constrained).cols() == 0);
+  CHECK(detail::rigid_displacements(mesh, constrained).cols() == 0);
   constrained.pop_back();
-  CHECK_THROWS_AS(rigid_displacements(mesh, constrained), SetupError);
+  CHECK_THROWS_AS(detail::rigid_displacements(mesh, constrained), SetupError);
 }

@@ -14,7 +14,7 @@ namespace {
 using Mask = std::vector<std::uint8_t>;
 
 std::vector<std::string> modes_of(const Mesh<Tet4>& mesh, const Mask& constrained) {
-  const auto all = free_rigid_modes(mesh, constrained);
+  const auto all = detail::free_rigid_modes(mesh, constrained);
   REQUIRE(all.size() == 1);
   return all.front().modes;
 }
@@ -39,13 +39,13 @@ int free_by_svd(const std::vector<Vector3>& positions, const Mask& constrained) 
 
 TEST_CASE("all constraint patterns of one tetrahedron", "[mesh][rigid_modes][extreme][B8]") {
   const Mesh<Tet4> mesh = corner_tetrahedron();
-  const MeshComponents components = connected_components<Tet4>(mesh);
+  const detail::MeshComponents components = detail::connected_components<Tet4>(mesh);
   std::array<int, 7> seen{};
   int wrong = 0;
   for (unsigned pattern = 0; pattern < 4096; ++pattern) {
     Mask mask(4);
     for (unsigned i = 0; i < 4; ++i) mask[i] = static_cast<std::uint8_t>(pattern >> (3 * i) & 7u);
-    const int found = free_rigid_modes(mesh.positions, components.of_node, mask).front().count();
+    const int found = detail::free_rigid_modes(mesh.positions, components.of_node, mask).front().count();
     ++seen[static_cast<std::size_t>(found)];
     wrong += found == free_by_svd(mesh.positions, mask) ? 0 : 1;
   }
@@ -150,28 +150,29 @@ TEST_CASE("every component is checked separately", "[mesh][rigid_modes][extreme]
   Mask mask(both.positions.size(), 0);
   for (std::size_t i = 0; i < 8; ++i) mask[i] = 7;
   mask[8] = mask[9] = 7;  // two nodes of the second
-  const auto all = free_rigid_modes(both, mask);
+  const auto all = detail::free_rigid_modes(both, mask);
   REQUIRE(all.size() == 2);
   CHECK(all[0].count() == 0);
   CHECK(all[1].count() == 1);
   CHECK(all[1].node_count == 8);
   CHECK(all[1].first_nodes.front() == 8);
-  const auto p = refused(SetupErrorKind::unconstrained, [&] { require_constrained(both, mask); });
+  const auto p = refused(SetupErrorKind::unconstrained, [&] { detail::require_constrained(both, mask); });
   CHECK(p.ids.front() == 8);
   CHECK(p.count == 8);
   CHECK(p.value == 1.0);
   CHECK_THAT(p.what, contains("component 1 of 2"));
   CHECK_THAT(p.what, contains("rotation about the axis (1, 0, 0) through (3"));
   mask[10] = 7;
-  CHECK_NOTHROW(require_constrained(both, mask));
-  CHECK_THAT(refused(SetupErrorKind::unconstrained, [&] { require_constrained(both, Mask(mask.size(), 0)); }).what,
-             contains("1 more component"));
+  CHECK_NOTHROW(detail::require_constrained(both, mask));
+  CHECK_THAT(
+      refused(SetupErrorKind::unconstrained, [&] { detail::require_constrained(both, Mask(mask.size(), 0)); }).what,
+      contains("1 more component"));
 }
 
 TEST_CASE("axes are named in another frame", "[mesh][rigid_modes]") {
   const Mesh<Tet4> mesh = corner_tetrahedron();
   const auto axis = [&](const Mask& mask, const Vector3& origin) {
-    const auto all = free_rigid_modes(mesh, mask, origin);
+    const auto all = detail::free_rigid_modes(mesh, mask, origin);
     REQUIRE(all.size() == 1);
     REQUIRE(all[0].count() == 1);
     return all[0].modes[0];
@@ -181,21 +182,21 @@ TEST_CASE("axes are named in another frame", "[mesh][rigid_modes]") {
   // Far from zero the coordinates have enough digits to locate the axis in the body.
   CHECK(axis({7, 7, 0, 0}, {1234.25, 0, -1e6}) == "rotation about the axis (1, 0, 0) through (1234.75, 0, -1000000)");
   const auto p = refused(SetupErrorKind::unconstrained, [&] {
-    require_constrained(mesh, Mask{7, 7, 0, 0}, Vector3(3, -2, 0));
+    detail::require_constrained(mesh, Mask{7, 7, 0, 0}, Vector3(3, -2, 0));
   });
   CHECK_THAT(p.what, contains("through (3.5, -2, 0)"));
   CHECK(p.ids_of == SetupIds::nodes);
 }
 
 TEST_CASE("different lengths are refused", "[mesh][rigid_modes]") {
-  refused(SetupErrorKind::bad_argument, [] { free_rigid_modes(corner_tetrahedron(), Mask(3)); });
+  refused(SetupErrorKind::bad_argument, [] { detail::free_rigid_modes(corner_tetrahedron(), Mask(3)); });
 }
 
 TEST_CASE("components are numbered by their lowest node", "[mesh][components]") {
   Mesh<Tet4> mesh;
   mesh.positions.assign(14, Vector3::Zero());
   mesh.elements = {{13, 12, 11, 10}, {1, 9, 8, 7}, {6, 5, 4, 3}, {3, 9, 1, 2}};
-  const MeshComponents c = connected_components<Tet4>(mesh);
+  const detail::MeshComponents c = detail::connected_components<Tet4>(mesh);
   CHECK(c.count == 2);
   CHECK(c.of_node == std::vector<NodeId>{-1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1});
 }

@@ -109,7 +109,7 @@ TEST_CASE("chosen parts of a round body support it, and contain a twelfth of its
   const auto boundary = extract_boundary<Tet4>(round_body);
   const auto area_of = [&](const Selection& part) {
     double sum = 0.0;
-    for (const auto& f : resolve_faces(round_body, boundary, part)) {
+    for (const auto& f : detail::resolve_faces(round_body, boundary, part)) {
       const Vector3 &a = round_body.position(f.nodes[0]), &b = round_body.position(f.nodes[1]),
                     &c = round_body.position(f.nodes[2]);
       sum += 0.5 * (b - a).cross(c - a).norm();

@@ -18,7 +18,7 @@ std::vector<NodeId> group_nodes(const Mesh<Tet4>& mesh, const char* name) {
 
 template <Element E>
 std::vector<BoundaryFace> faces_of(const Mesh<E>& mesh, const Selection& selection) {
-  return resolve_faces(mesh, extract_boundary<E>(mesh), selection);
+  return detail::resolve_faces(mesh, extract_boundary<E>(mesh), selection);
 }
 
 SetupErrorKind kind_of(const std::function<void()>& what) {

@@ -32,7 +32,7 @@ VectorX displaced_at_tick() {
   for (int v = 0; v < 4; ++v) u.segment<3>(3 * (5 + v)) = at_tick(v);
   return u;
 }
-void check_forces_of_tick(const ContactSprings& springs) {
+void check_forces_of_tick(const detail::ContactSprings& springs) {
   std::vector<VertexForce> read = forces;
   springs.read(displaced_at_tick(), read);
   for (std::size_t k = 0; k < 3; ++k)
@@ -42,7 +42,7 @@ void check_forces_of_tick(const ContactSprings& springs) {
 }  // namespace
 
 TEST_CASE("contact springs have the forces of the tick where the tick leaves the surface", "[model][contact_springs]") {
-  ContactSprings springs(4, 8, 8);
+  detail::ContactSprings springs(4, 8, 8);
   springs.set(forces, points, false, nodes, moved, compliance);
   REQUIRE(springs.all().size() == 2);
   check_forces_of_tick(springs);
@@ -60,7 +60,7 @@ TEST_CASE("contact springs have the forces of the tick where the tick leaves the
 }
 
 TEST_CASE("a contact spring of a grasped point also pulls", "[model][contact_springs]") {
-  ContactSprings springs(4, 8, 8);
+  detail::ContactSprings springs(4, 8, 8);
   const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}, true}};
   std::vector<VertexForce> force{{0, {0, 0, -2.0}}};
   springs.set(force, one, false, nodes, moved, compliance);
@@ -71,7 +71,7 @@ TEST_CASE("a contact spring of a grasped point also pulls", "[model][contact_spr
 }
 
 TEST_CASE("all contact springs together are three times as stiff as the tissue", "[model][contact_springs]") {
-  ContactSprings springs(4, 8, 8);
+  detail::ContactSprings springs(4, 8, 8);
   const std::vector<PointForce> one{{{0, 1, 2}, {1.0, 0.0, 0.0}, {0, 0, -2.0}}};
   const std::vector<VertexForce> force{{0, {0, 0, -2.0}}};
   springs.set(force, one, false, nodes, moved, compliance);
@@ -80,7 +80,7 @@ TEST_CASE("all contact springs together are three times as stiff as the tissue",
 }
 
 TEST_CASE("with friction contact springs also hold points across their forces", "[model][contact_springs]") {
-  ContactSprings springs(4, 8, 8);
+  detail::ContactSprings springs(4, 8, 8);
   springs.set(forces, points, true, nodes, moved, compliance);
   REQUIRE(springs.all().size() == 6);
   check_forces_of_tick(springs);
@@ -92,7 +92,7 @@ TEST_CASE("with friction contact springs also hold points across their forces", 
 }
 
 TEST_CASE("no contact springs where a point's vertex has no force, or there is no room", "[model][contact_springs]") {
-  ContactSprings springs(4, 8, 8), small(4, 2, 8);
+  detail::ContactSprings springs(4, 8, 8), small(4, 2, 8);
   springs.set({forces.data(), 2}, points, false, nodes, moved, compliance);
   CHECK(springs.empty());
   small.set(forces, points, false, nodes, moved, compliance);

@@ -25,13 +25,13 @@ Scene standing() {
   scene.fix("z0").gravity({0.0, 0.0, -9.81});
   return scene;
 }
-CorotatedMotionOptions to_the_end(TimeScheme scheme = TimeScheme::implicit_euler()) {
-  CorotatedMotionOptions options;
+detail::CorotatedMotionOptions to_the_end(TimeScheme scheme = TimeScheme::implicit_euler()) {
+  detail::CorotatedMotionOptions options;
   options.scheme = scheme;
   options.solve = {2000, 1e-13};
   return options;
 }
-using Exact = CorotatedMotion<LinearElastic, double>;
+using Exact = detail::CorotatedMotion<LinearElastic, double>;
 
 Vector3 momentum_of(const Exact& m) {
   Vector3 sum = Vector3::Zero();
@@ -71,7 +71,7 @@ TEST_CASE("one linearisation per step follows the converged steps, closer with s
     double error[2];
     for (int fine = 0; fine < 2; ++fine) {
       Exact motion(pad(), standing(), to_the_end(scheme));
-      ImplicitDynamics reference(make_deformable_body(pad(), standing()), {.scheme = scheme});
+      ImplicitDynamics reference(detail::make_deformable_body(pad(), standing()), {.scheme = scheme});
       const double h = fine ? 1e-3 : 2e-3;
       const VectorX u = bent(motion, 4.0), v = VectorX::Zero(u.size());
       motion.set_state(u, v);
@@ -85,13 +85,13 @@ TEST_CASE("one linearisation per step follows the converged steps, closer with s
 }
 
 TEST_CASE("single precision with a tolerance of one percent stays close to the reference", "[model][corotated]") {
-  CorotatedMotionOptions options;
+  detail::CorotatedMotionOptions options;
   options.solve.tolerance = 1e-2;
-  CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
+  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
   Exact reference(pad(), standing(), to_the_end());
   double apart = 0.0;
   for (int k = 0; k < 200; ++k) {
-    const CorotatedStep step = motion.step(1e-3);
+    const detail::CorotatedStep step = motion.step(1e-3);
     REQUIRE(step.taken);
     CHECK(step.solve.converged);
     REQUIRE(reference.step(1e-3).taken);
@@ -101,18 +101,18 @@ TEST_CASE("single precision with a tolerance of one percent stays close to the r
 }
 
 TEST_CASE("the motion settles in the equilibrium for any step and preconditioner", "[model][corotated]") {
-  ImplicitDynamics reference(make_deformable_body(pad(), standing()), {.mass_damping = 20.0});
+  ImplicitDynamics reference(detail::make_deformable_body(pad(), standing()), {.mass_damping = 20.0});
   for (int k = 0; k < 200; ++k) reference.step(0.05);
   const auto settles = [&](auto&& motion, double h, double tolerance) {
     for (int k = 0; k * h < 8.0; ++k) motion.step(h);
     CHECK((motion.displacement() - reference.displacement()).norm() <= tolerance * reference.displacement().norm());
   };
-  CorotatedMotionOptions options;
+  detail::CorotatedMotionOptions options;
   options.mass_damping = 20.0;
   options.solve.tolerance = 1e-2;
   settles(Exact(pad(), standing(), options), 1e-2, 1e-9);
-  settles(CorotatedMotion<LinearElastic, float>(pad(), standing(), options), 1e-2, 1e-4);
-  settles(CorotatedMotion<LinearElastic, double, CorotatedFactor>(pad(), standing(), options), 5e-2, 1e-9);
+  settles(detail::CorotatedMotion<LinearElastic, float>(pad(), standing(), options), 1e-2, 1e-4);
+  settles(detail::CorotatedMotion<LinearElastic, double, CorotatedFactor>(pad(), standing(), options), 5e-2, 1e-9);
   options.stiffness_damping = 1e-2;
   settles(Exact(pad(), standing(), options), 2e-3, 1e-9);
 }
@@ -125,7 +125,7 @@ TEST_CASE("a free body keeps its momentum", "[model][corotated]") {
   motion.set_state(VectorX::Zero(v.size()), v);
   const Vector3 before = momentum_of(motion);
   for (int k = 0; k < 500; ++k) {
-    const CorotatedStep step = motion.step(1e-3);
+    const detail::CorotatedStep step = motion.step(1e-3);
     REQUIRE(step.taken);
     CHECK(step.linearisations == 1);
   }
@@ -143,7 +143,7 @@ TEST_CASE("implicit Euler never adds energy, from any state", "[model][corotated
       double energy = stored(pad(0.45), u), start = energy;
       INFO("step " << h << ", random displacements up to " << amount);
       for (int k = 0; k < 40; ++k) {
-        const CorotatedStep step = motion.step(h);
+        const detail::CorotatedStep step = motion.step(h);
         REQUIRE(step.taken);
         CHECK(step.energy_bounded);
         const double now = stored(pad(0.45), motion.displacement()) + motion.kinetic_energy();
@@ -155,15 +155,15 @@ TEST_CASE("implicit Euler never adds energy, from any state", "[model][corotated
 
 TEST_CASE("bodies with random displacements settle without inverted elements", "[model][corotated][E5]") {
   testing::Random random(12);
-  CorotatedMotionOptions options;
+  detail::CorotatedMotionOptions options;
   options.mass_damping = 5.0;
-  CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
+  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
   int upright = 0;
   for (int run = 0; run < 20; ++run) {
     VectorX u(motion.size());
     for (double& x : u) x = random.uniform(-0.01, 0.01);  // half of a cell
     motion.set_state(u, VectorX::Zero(u.size()));
-    CorotatedStep last;
+    detail::CorotatedStep last;
     for (int k = 0; k < 300; ++k) last = motion.step(1e-2);
     CHECK(motion.displacement().allFinite());
     upright += last.deformation.inverted == 0 ? 1 : 0;
@@ -178,16 +178,16 @@ TEST_CASE("a pad pressed by two fifths of its height keeps all elements upright"
     for (Index i = 0; i < mesh.node_count(); ++i)
       if (mesh.position(i).z() > 0.029 && (mesh.position(i) - Vector3(0.03, 0.03, 0.03)).norm() < 0.008)
         patch.push_back(static_cast<NodeId>(i));
-    CorotatedMotionOptions options;
+    detail::CorotatedMotionOptions options;
     options.mass_damping = 20.0;
-    CorotatedMotion<LinearElastic, float> motion(
+    detail::CorotatedMotion<LinearElastic, float> motion(
         make_hyperelastic_body(mesh, std::vector<Elastic>{{{5e3, nu, 1000.0}}}), Scene().fix("z0").fix(patch), options);
     VectorX prescribed = VectorX::Zero(motion.size());
     double smallest = 1.0;
     for (int k = 1; k <= 1000; ++k) {  // 13 mm within 0.65 s
       for (const NodeId i : patch) prescribed[3 * Index{i} + 2] = -2e-5 * std::min(k, 650);
       motion.set_prescribed(prescribed);
-      const CorotatedStep step = motion.step(1e-3);
+      const detail::CorotatedStep step = motion.step(1e-3);
       REQUIRE(step.taken);
       CHECK(step.residual <= 0.01);
       smallest = std::min(smallest, step.deformation.smallest_volume_ratio);
@@ -259,8 +259,8 @@ TEST_CASE("invalid steps change nothing", "[model][corotated][E1]") {
 }
 
 TEST_CASE("co-rotated steps do not allocate", "[model][corotated]") {
-  CorotatedMotion<LinearElastic, float> motion(pad(), standing());
-  CorotatedMotion<LinearElastic, double, CorotatedFactor> rotated(pad(), standing());
+  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing());
+  detail::CorotatedMotion<LinearElastic, double, CorotatedFactor> rotated(pad(), standing());
   const VectorX load = motion.body().load;
   const testing::AllocationScope scope;
   for (int k = 0; k < 20; ++k) {
@@ -273,7 +273,7 @@ TEST_CASE("co-rotated steps do not allocate", "[model][corotated]") {
 
 TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
   const auto kind = [](const HyperelasticBody<Tet4, Elastic>& body, const Scene& scene,
-                       CorotatedMotionOptions options) {
+                       detail::CorotatedMotionOptions options) {
     try {
       Exact(body, scene, options);
     } catch (const SetupError& e) {
@@ -296,9 +296,9 @@ TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
 }
 
 TEST_CASE("a correction that did not converge is not applied", "[model][corotated]") {
-  CorotatedMotionOptions options;
+  detail::CorotatedMotionOptions options;
   options.solve.maximum_iterations = 1;
-  CorotatedMotion<LinearElastic, double> motion(pad(), standing(), options);
+  detail::CorotatedMotion<LinearElastic, double> motion(pad(), standing(), options);
   REQUIRE(motion.step(1e-2).taken);
   const VectorX u = motion.displacement(), load = motion.body().load;
   CHECK_FALSE(motion.correct(load));
@@ -308,17 +308,17 @@ TEST_CASE("a correction that did not converge is not applied", "[model][corotate
 TEST_CASE("the relative residual is zero at rest and at most one with strong damping", "[model][corotated]") {
   Scene scene;
   scene.fix("z0");
-  CorotatedMotion<> still(pad(), scene);
+  detail::CorotatedMotion<> still(pad(), scene);
   CHECK(still.step(1e-3).residual == 0.0);
-  CorotatedMotionOptions options;
+  detail::CorotatedMotionOptions options;
   options.mass_damping = 1e5;
-  CorotatedMotion<> damped(pad(), standing(), options);
+  detail::CorotatedMotion<> damped(pad(), standing(), options);
   damped.set_state(damped.displacement(), VectorX::Constant(damped.size(), 1.0));
   for (int k = 0; k < 5; ++k) CHECK(damped.step(1e-3).residual <= 1.0);
 }
 
 TEST_CASE("a refused step does not affect the next step", "[model][corotated][E6]") {
-  CorotatedMotionOptions options = to_the_end();
+  detail::CorotatedMotionOptions options = to_the_end();
   options.stiffness_damping = 1e-3;
   Exact motion(pad(), standing(), options), same(pad(), standing(), options);
   for (int k = 0; k < 10; ++k)
@@ -327,7 +327,7 @@ TEST_CASE("a refused step does not affect the next step", "[model][corotated][E6
   motion.set_prescribed(VectorX::Constant(motion.size(), std::numeric_limits<double>::quiet_NaN()));
   REQUIRE_FALSE(motion.step(5e-3).taken);
   motion.set_prescribed(good);
-  const CorotatedStep a = motion.step(5e-3), b = same.step(5e-3);
+  const detail::CorotatedStep a = motion.step(5e-3), b = same.step(5e-3);
   CHECK(a.energy_bounded);
   CHECK(a.linearisations == b.linearisations);
   CHECK((motion.displacement() - same.displacement()).norm() <= 1e-10 * same.displacement().norm());

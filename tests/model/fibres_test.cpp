@@ -25,18 +25,18 @@ TEST_CASE("the cache of a body is rejected for other fibres", "[model][cache][fi
   Scene scene;
   scene.fix("x0");
   const auto key_of = [&](const Body<Tet4>& body) {
-    return cache_key(body_key(body), conditions_of(body.mesh, scene), {}, assemble_stiffness<Tet4>(body, {}), "policy",
-                     8);
+    return detail::cache_key(detail::body_key(body), conditions_of(body.mesh, scene), {},
+                             assemble_stiffness<Tet4>(body, {}), "policy", 8);
   };
-  const CacheKey key = key_of(make_body(mesh, muscle));
+  const detail::CacheKey key = key_of(make_body(mesh, muscle));
   std::string why;
-  CHECK(compare(key, key_of(make_body(mesh, muscle)), why) == CacheMismatch::none);
+  CHECK(detail::compare(key, key_of(make_body(mesh, muscle)), why) == CacheMismatch::none);
   Mesh<Tet4> rotated = mesh, swapped = mesh, without = mesh;
   rotated.fibres[5] = mesh.fibres[6];
   std::swap(swapped.fibres[2], swapped.fibres[3]);
   without.fibres.clear();
   for (const Mesh<Tet4>& other : {rotated, swapped, without})
-    CHECK(compare(key, key_of(make_body(other, muscle)), why) == CacheMismatch::material);
+    CHECK(detail::compare(key, key_of(make_body(other, muscle)), why) == CacheMismatch::material);
 }
 
 TEST_CASE("a model with fibres agrees with the equilibrium of its assembled parts", "[model][fibres]") {
@@ -46,8 +46,8 @@ TEST_CASE("a model with fibres agrees with the equilibrium of its assembled part
   using Model = HapticFEModel<Tet4, TransverselyIsotropic, Condensed<SelectiveInverse>>;
   const Model model(mesh, scene, muscle);
   Body<Tet4> body = make_body(mesh, muscle);
-  body.initial_strain = initial_strains_by_region(mesh, scene);
-  VectorX force(3 * mesh.node_count()), weight = initial_strain_load(body);
+  body.initial_strain = detail::initial_strains_by_region(mesh, scene);
+  VectorX force(3 * mesh.node_count()), weight = detail::initial_strain_load(body);
   assemble_stiffness<Tet4>(body, {}).apply(model.displacement(), force);
   const VectorX mass = nodal_mass(body);
   for (Index i = 0; i < mass.size(); ++i) weight[3 * i + 2] -= 9.81 * mass[i];

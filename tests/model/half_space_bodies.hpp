@@ -32,8 +32,8 @@ struct TouchedBlock {
     stiffness = assemble_stiffness<E>(body, {});
   }
 
-  ProjectedHalfSpace table(const SetupLimits& limits = {}) const {
-    return project_half_space<E>(body, boundary, touched, constrained, &stiffness, limits);
+  detail::ProjectedHalfSpace table(const SetupLimits& limits = {}) const {
+    return detail::project_half_space<E>(body, boundary, touched, constrained, &stiffness, limits);
   }
 };
 

@@ -13,7 +13,7 @@
 using namespace palpate;
 
 TEST_CASE("the compliance near contacts is known for listed pairs only, as many as there is room for", "[model]") {
-  NearCompliance near(10, 3, 2);
+  detail::NearCompliance near(10, 3, 2);
   int evaluated = 0;
   const auto number = [&](int i, int j) -> Matrix3 {
     ++evaluated;
@@ -37,7 +37,7 @@ TEST_CASE("the compliance near contacts is known for listed pairs only, as many 
 
 TEST_CASE("the displacement near contacts is the sum over the forces whose blocks are known", "[model]") {
   testing::Random random(3);
-  NearCompliance near(6, 4, 3);
+  detail::NearCompliance near(6, 4, 3);
   near.set(std::array{0, 1, 2, 5}, std::array{4, 0, 5}, [&](int, int) {
     Matrix3 c;
     for (Index k = 0; k < 9; ++k) c.data()[k] = random.uniform(-1.0, 1.0);

@@ -41,7 +41,7 @@ std::unique_ptr<TissueMotion> motion_of(const Mesh<E>& mesh, const Scene& scene,
 }
 template <class E>
 std::vector<NodeId> touched_nodes(const Mesh<E>& mesh, const Scene& scene) {
-  return resolve_touchable(mesh_ref(mesh), extract_boundary<E>(mesh), scene).nodes;
+  return detail::resolve_touchable(mesh_ref(mesh), extract_boundary<E>(mesh), scene).nodes;
 }
 /// A push on the touched nodes, and a small force on all others.
 template <class E>
@@ -70,10 +70,10 @@ VectorX rest_under(TissueMotion& motion, const VectorX& load) {
 TEST_CASE("a body is divided by the distance along its edges", "[model][partly_linear]") {
   const auto mesh = slab();
   const auto touched = touched_nodes(mesh, touched_slab());
-  const NodeElements around(mesh);
+  const detail::NodeElements around(mesh);
   std::size_t last = 0;
   for (const double within : {0.0, 0.015, 0.03, 0.045, 1.0}) {
-    const BodyParts parts = divide_body(mesh_ref(mesh), touched, within);
+    const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched, within);
     CHECK(parts.near.elements.size() > last);
     last = parts.near.elements.size();
     CHECK(parts.near.elements.size() + parts.far.elements.size() == mesh.elements.size());
@@ -88,7 +88,7 @@ TEST_CASE("a body is divided by the distance along its edges", "[model][partly_l
           CHECK((straight > within || parts.near.local(i) >= 0));  // a path is not shorter
         }
   }
-  CHECK(divide_body(mesh_ref(mesh), touched, 1.0).far.elements.empty());
+  CHECK(detail::divide_body(mesh_ref(mesh), touched, 1.0).far.elements.empty());
 }
 
 TEMPLATE_TEST_CASE("at small displacement linear surroundings change nothing", "[model][partly_linear]", Tet4, Tet10) {
@@ -106,7 +106,7 @@ TEMPLATE_TEST_CASE("at small displacement linear surroundings change nothing", "
   for (const double within : {0.0, 0.02, 0.045}) {
     INFO("within " << within);
     const auto partly = motion_of(mesh, scene, exact_steps(within));
-    CHECK(dynamic_cast<const PartlyLinearMotion*>(partly.get()) != nullptr);
+    CHECK(dynamic_cast<const detail::PartlyLinearMotion*>(partly.get()) != nullptr);
     CHECK((rest_under(*partly, load) - pressed).norm() <= 1e-5 * pressed.norm());
     partly->set_prescribed(raised);
     CHECK((rest_under(*partly, load) - moved).norm() <= 1e-5 * moved.norm());
@@ -127,22 +127,22 @@ TEMPLATE_TEST_CASE("the error of linear surroundings falls with their distance",
     CHECK(error < last);
     last = error;
   }
-  CHECK(last < (HasSmoothedStrain<TestType> ? 0.02 : 0.005));  // smoothing ends at the interface
+  CHECK(last < (detail::HasSmoothedStrain<TestType> ? 0.02 : 0.005));  // smoothing ends at the interface
 }
 
 TEST_CASE("the force of a surrounded part is the derivative of its energy", "[model][partly_linear]") {
   const auto mesh = slab<Tet4>();
-  const BodyParts parts = divide_body(mesh_ref(mesh), touched_nodes(mesh, touched_slab()), 0.01);
+  const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched_nodes(mesh, touched_slab()), 0.01);
   const auto body = make_hyperelastic_body(mesh, std::vector{neo_hookean_liver});
-  const auto far = part_of(body.rest, parts.far);
-  LinearSurroundings surroundings(
+  const auto far = detail::part_of(body.rest, parts.far);
+  detail::LinearSurroundings surroundings(
       assemble_stiffness<Tet4>(far, {}),
-      conditions_of(parts.far, resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
+      detail::conditions_of(parts.far, detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
       far.mesh.positions, parts.interface_in(parts.far), {});
   const MatrixX& s = surroundings.stiffness();
   CHECK((s - s.transpose()).norm() == 0.0);
-  SurroundedForces forces(detail::make_energy_forces<double>(part_of(body, parts.near), SetupLimits{}), s,
-                          dofs_in(parts.near, parts.far, surroundings.kept()));
+  detail::SurroundedForces forces(detail::make_energy_forces<double>(detail::part_of(body, parts.near), SetupLimits{}),
+                                  s, detail::dofs_in(parts.near, parts.far, surroundings.kept()));
   Random random(5);
   VectorX u(forces.size()), f(u.size()), unused(u.size()), direction(u.size());
   for (double& x : u) x = random.uniform(-5e-4, 5e-4);
@@ -222,7 +222,7 @@ TEST_CASE("values of free dofs have no effect on prescribed displacements", "[mo
 TEST_CASE("a refusal of a part names the nodes of the body", "[model][partly_linear][extreme]") {
   auto mesh = slab();
   const auto touched = touched_nodes(mesh, touched_slab());
-  const BodyParts parts = divide_body(mesh_ref(mesh), touched, 0.02);
+  const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched, 0.02);
   mesh.region_names = {"tissue", "light"};
   mesh.regions.assign(mesh.elements.size(), 0);
   for (const Index e : parts.near.elements) mesh.regions[static_cast<std::size_t>(e)] = 1;

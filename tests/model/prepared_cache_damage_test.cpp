@@ -16,7 +16,7 @@ using namespace test;
 
 namespace {
 
-constexpr std::size_t header_size = sizeof(CacheHeader), word = sizeof(std::uint64_t);
+constexpr std::size_t header_size = sizeof(detail::CacheHeader), word = sizeof(std::uint64_t);
 
 /// A tiny model whose cache file is tampered with.
 class Tampered {
@@ -48,7 +48,7 @@ class Tampered {
   /// The good file with a changed header, as another version of the library would have written it.
   template <class Change>
   Bytes with_header(Change change) const {
-    CacheHeader header;
+    detail::CacheHeader header;
     std::memcpy(&header, good.data(), header_size);
     change(header);
     header.hash = header.right_hash();
@@ -174,14 +174,14 @@ TEST_CASE("caches of other versions and other machines are rejected", "[model][c
     CHECK(static_cast<int>(r.mismatch) == static_cast<int>(expected));
     return r.why;
   };
-  CHECK_THAT(why(t.with_header([](CacheHeader& h) { ++h.version; }), CacheMismatch::version),
+  CHECK_THAT(why(t.with_header([](detail::CacheHeader& h) { ++h.version; }), CacheMismatch::version),
              contains("library " + std::to_string(PALPATE_VERSION + 1) + " in the file"));
-  CHECK_THAT(why(t.with_header([](CacheHeader& h) { ++h.layout; }), CacheMismatch::version),
-             contains("layout " + std::to_string(CacheHeader::our_layout + 1) + " in the file, " +
-                      std::to_string(CacheHeader::our_layout) + " here"));
-  CHECK_THAT(why(t.with_header([](CacheHeader& h) { h.key.stiffness ^= 1; }), CacheMismatch::stiffness),
+  CHECK_THAT(why(t.with_header([](detail::CacheHeader& h) { ++h.layout; }), CacheMismatch::version),
+             contains("layout " + std::to_string(detail::CacheHeader::our_layout + 1) + " in the file, " +
+                      std::to_string(detail::CacheHeader::our_layout) + " here"));
+  CHECK_THAT(why(t.with_header([](detail::CacheHeader& h) { h.key.stiffness ^= 1; }), CacheMismatch::stiffness),
              contains("the stiffness differs"));
-  CHECK_THAT(why(t.with_header([](CacheHeader& h) { h.key.element ^= 1; }), CacheMismatch::element),
+  CHECK_THAT(why(t.with_header([](detail::CacheHeader& h) { h.key.element ^= 1; }), CacheMismatch::element),
              contains("the element differs"));
 
   Bytes swapped = t.good;  // as a machine of the other endianness writes: every word but the magic and the name

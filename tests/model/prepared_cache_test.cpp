@@ -182,11 +182,11 @@ TEST_CASE("an element with other quadrature points is another element", "[model]
     using Quadrature = TetrahedronRule<2>;
   };
   CHECK(detail::hash_of_element<Tet4>() != detail::hash_of_element<FinerTet4>());
-  CacheKey here, file;
+  detail::CacheKey here, file;
   std::string why;
-  CHECK(compare(file, here, why) == CacheMismatch::none);
+  CHECK(detail::compare(file, here, why) == CacheMismatch::none);
   file.element = 1;
-  CHECK(compare(file, here, why) == CacheMismatch::element);
+  CHECK(detail::compare(file, here, why) == CacheMismatch::element);
   CHECK(why == "the element differs");
 }
 

@@ -31,7 +31,7 @@ TouchedBlock<E> uneven_block(double poisson_ratio) {
 
 /// Largest difference of corresponding blocks, relative to the largest block.
 template <class Expected>
-double difference(const ProjectedHalfSpace& table, Expected&& expected) {
+double difference(const detail::ProjectedHalfSpace& table, Expected&& expected) {
   double worst = 0.0, largest = 0.0;
   for (int i = 0; i < table.vertex_count(); ++i)
     for (int j = 0; j <= i; ++j) {
@@ -52,9 +52,9 @@ Scatter scatter_of(const Mesh<E>& mesh, double poisson_ratio) {
   Scene scene;
   scene.fix("z0").touch("z1");
   const HapticFEModel<E, LinearElastic> model(mesh, scene, LinearElastic{1.0, poisson_ratio, 1.0});
-  const auto table =
-      project_half_space<E>(model.body(), model.boundary(), model.touchable_nodes(),
-                            resolve_essential(model.mesh(), model.boundary(), scene).constrained, nullptr, {});
+  const auto table = detail::project_half_space<E>(
+      model.body(), model.boundary(), model.touchable_nodes(),
+      detail::resolve_essential(model.mesh(), model.boundary(), scene).constrained, nullptr, {});
   std::vector<double> whole, rest;
   for (int v = 0; v < table.vertex_count(); ++v)
     if (table.vertex(v).position.template head<2>().cwiseAbs().maxCoeff() < 2.5) {
@@ -78,7 +78,7 @@ TEMPLATE_TEST_CASE("the image of a half-space scales, moves and rotates with the
                    Smoothed<Tet4>) {
   const double nu = GENERATE(0.3, 0.4999);
   const TouchedBlock<TestType> block = uneven_block<TestType>(nu);
-  const ProjectedHalfSpace table = block.table();
+  const detail::ProjectedHalfSpace table = block.table();
   REQUIRE(table.vertex_count() == (width + 1) * (width + 1));
   CHECK(difference(table, [&](int i, int j) { return Matrix3(table(j, i).transpose()); }) == 0.0);
 
@@ -120,12 +120,12 @@ TEMPLATE_TEST_CASE("the load on a surface that is nearly flat is nearly a unit f
     if constexpr (TestType::nodes == 10) return box_tet10(size, cells);
     if constexpr (TestType::nodes == 20) return box_hex20(size, cells);
   }();
-  const ProjectedHalfSpace flat = block_of(mesh, 0.45).table();
+  const detail::ProjectedHalfSpace flat = block_of(mesh, 0.45).table();
   testing::Random random(41);
   TouchedBlock<TestType> bumpy = block_of(mesh, 0.45);
   for (const NodeId n : bumpy.touched)
     bumpy.body.mesh.positions[static_cast<std::size_t>(n)][2] -= 1e-7 * random.uniform();
-  const ProjectedHalfSpace table = bumpy.table();
+  const detail::ProjectedHalfSpace table = bumpy.table();
   for (int v = 0; v < flat.vertex_count(); ++v)
     if (flat.marks(v).bits == 0) CHECK((table(v, v) - flat(v, v)).norm() <= 1e-3 * flat(v, v).norm());
 }
@@ -134,7 +134,7 @@ TEST_CASE("the image of a half-space has the same bits for any number of threads
   const TouchedBlock<Tet4> block = uneven_block<Tet4>(0.45);
   SetupLimits three;
   three.threads = SetupThreads(3);
-  const ProjectedHalfSpace one = block.table();
+  const detail::ProjectedHalfSpace one = block.table();
   CHECK(difference(block.table(three), [&](int i, int j) { return one(i, j); }) == 0.0);
 }
 
@@ -163,13 +163,13 @@ TEST_CASE("what is left without the image of a half-space does not depend on the
 
 TEST_CASE("vertices at which a surface is no half-space are marked", "[half_space]") {
   const TouchedBlock<Tet4> block = uneven_block<Tet4>(0.3);
-  const ProjectedHalfSpace table = block.table();
+  const detail::ProjectedHalfSpace table = block.table();
   for (int v = 0; v < table.vertex_count(); ++v) {
     const Vector3& x = table.vertex(v).position;
     const double to_edge = std::min({x[0], x[1], width - x[0], width - x[1]});
-    CHECK(table.marks(v).has(HalfSpaceMark::sharp_edge) == (to_edge < 1e-9));
+    CHECK(table.marks(v).has(detail::HalfSpaceMark::sharp_edge) == (to_edge < 1e-9));
     if (to_edge > 2.0) CHECK(table.marks(v).bits == 0);
-    if (to_edge > 0.5 && to_edge < 1.3) CHECK(table.marks(v).has(HalfSpaceMark::near_edge));
+    if (to_edge > 0.5 && to_edge < 1.3) CHECK(table.marks(v).has(detail::HalfSpaceMark::near_edge));
   }
 }
 
@@ -182,16 +182,16 @@ TEST_CASE("vertices inside the body, or without a solution, keep the compliance 
   block.touched.push_back(inside);
   std::ranges::sort(block.touched);
   const int vertex = static_cast<int>(std::ranges::find(block.touched, inside) - block.touched.begin());
-  const ProjectedHalfSpace table = block.table();
-  CHECK(table.marks(vertex).has(HalfSpaceMark::no_surface));
+  const detail::ProjectedHalfSpace table = block.table();
+  CHECK(table.marks(vertex).has(detail::HalfSpaceMark::no_surface));
   CHECK(table.vertex(vertex).root == 0.0);
   CHECK(table.columns(vertex).empty());
   // A stiffness without springs at one node has a pivot that is zero.
   block.stiffness.block(block.stiffness.pattern().diagonal(inside)).setZero();
-  const ProjectedHalfSpace broken = block.table();
+  const detail::ProjectedHalfSpace broken = block.table();
   int singular = 0;
   for (int v = 0; v < broken.vertex_count(); ++v)
-    if (broken.marks(v).has(HalfSpaceMark::singular)) {
+    if (broken.marks(v).has(detail::HalfSpaceMark::singular)) {
       ++singular;
       CHECK(broken.columns(v).empty());
     }
@@ -200,24 +200,24 @@ TEST_CASE("vertices inside the body, or without a solution, keep the compliance 
 
 TEST_CASE("several materials and materials with directions are marked", "[half_space]") {
   TouchedBlock<Tet4> block = uneven_block<Tet4>(0.3);
-  const ProjectedHalfSpace one = block.table();
+  const detail::ProjectedHalfSpace one = block.table();
   block.body.elasticity.push_back(4.0 * block.body.elasticity[0]);
   block.body.mesh.region_names.push_back("right");
   for (Index e = 0; e < block.body.mesh.element_count(); ++e)
     block.body.mesh.regions.push_back(element_nodes<Tet4>(block.body.mesh, e).col(0).mean() > width / 2 ? 1 : 0);
   block.body.density.push_back(1.0);
   block.body.initial_strain.push_back(Vector6::Zero());
-  const ProjectedHalfSpace two = block.table();
+  const detail::ProjectedHalfSpace two = block.table();
   for (int v = 0; v < two.vertex_count(); ++v) {
     const double x = two.vertex(v).position[0];
     const double to_border = std::abs(x - width / 2);
-    if (to_border < 1.5) CHECK(two.marks(v).has(HalfSpaceMark::several_materials));
-    if (to_border > 2.5) CHECK_FALSE(two.marks(v).has(HalfSpaceMark::several_materials));
+    if (to_border < 1.5) CHECK(two.marks(v).has(detail::HalfSpaceMark::several_materials));
+    if (to_border > 2.5) CHECK_FALSE(two.marks(v).has(detail::HalfSpaceMark::several_materials));
     const double softer = x > width / 2 + 0.5 ? 0.25 : 1.0;
     if (to_border > 0.5) CHECK((two(v, v) - softer * one(v, v)).norm() <= 1e-9 * one(v, v).norm());
   }
   block.body.elasticity[0](0, 0) *= 2.0;
-  CHECK(block.table().marks(0).has(HalfSpaceMark::anisotropic));
+  CHECK(block.table().marks(0).has(detail::HalfSpaceMark::anisotropic));
 }
 
 TEST_CASE("a layer that is thinner than its facets is marked, whatever its number of elements", "[half_space]") {
@@ -228,9 +228,10 @@ TEST_CASE("a layer that is thinner than its facets is marked, whatever its numbe
   const double border = 4.7;
   TouchedBlock<Tet4> block = block_of(std::move(mesh), 0.3);
   const auto marked = [&] {
-    const ProjectedHalfSpace table = block.table();
+    const detail::ProjectedHalfSpace table = block.table();
     int count = 0;
-    for (int v = 0; v < table.vertex_count(); ++v) count += table.marks(v).has(HalfSpaceMark::several_materials);
+    for (int v = 0; v < table.vertex_count(); ++v)
+      count += table.marks(v).has(detail::HalfSpaceMark::several_materials);
     return count;
   };
   CHECK(marked() == 0);
@@ -246,9 +247,9 @@ TEST_CASE("a layer that is thinner than its facets is marked, whatever its numbe
 TEST_CASE("vertices that are constrained along the surface are marked", "[half_space]") {
   TouchedBlock<Tet4> block = uneven_block<Tet4>(0.3);
   const auto middle = static_cast<std::size_t>(block.touched[block.touched.size() / 2]);
-  CHECK_FALSE(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(HalfSpaceMark::near_support));
+  CHECK_FALSE(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(detail::HalfSpaceMark::near_support));
   block.constrained[middle] = 1;
-  CHECK(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(HalfSpaceMark::near_support));
+  CHECK(block.table().marks(static_cast<int>(block.touched.size() / 2)).has(detail::HalfSpaceMark::near_support));
 }
 
 TEST_CASE("the projection of a half-space refuses lists of other sizes", "[half_space]") {

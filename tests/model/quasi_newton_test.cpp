@@ -62,7 +62,8 @@ TEMPLATE_TEST_CASE("a quasi-Newton equilibrium is that of Newton's method", "[mo
     mesh = promote<Tet10>(box_tet4(beam_size, {8, 2, 2}, BoxSplit::six));
   else
     mesh = beam();
-  Equilibrium newton(make_constrained_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()));
+  Equilibrium newton(
+      detail::make_constrained_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()));
   REQUIRE(newton.solve().converged);
   const VectorX& exact = newton.displacement();
   const auto motion = quasi_newton(mesh, hanging(), {});
@@ -72,8 +73,9 @@ TEMPLATE_TEST_CASE("a quasi-Newton equilibrium is that of Newton's method", "[mo
 
 TEST_CASE("quasi-Newton steps are those of Newton's method", "[model][quasi_newton]") {
   const auto mesh = beam();
-  ImplicitDynamics newton(make_deformable_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()),
-                          {.mass_damping = 2.0});
+  ImplicitDynamics newton(
+      detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()),
+      {.mass_damping = 2.0});
   const auto motion = quasi_newton(
       mesh, hanging(), {.settle = false, .mass_damping = 2.0, .maximum_iterations = 100, .tolerance = 1e-10});
   for (int k = 0; k < 20; ++k) {
@@ -90,7 +92,7 @@ TEST_CASE("quasi-Newton steps are those of Newton's method", "[model][quasi_newt
 TEST_CASE("a step of a bent body takes few iterations, far from rest and however rotated", "[model][quasi_newton]") {
   const auto mesh = copy_mesh<Smoothed<Tet4>>(beam());
   const auto motion = quasi_newton(mesh, hanging(), {.settle = false}, {20e3, 0.45, 1000.0});
-  const auto& report = static_cast<const QuasiNewtonMotion&>(*motion).report();
+  const auto& report = static_cast<const detail::QuasiNewtonMotion&>(*motion).report();
   int iterations = 0;
   double largest = 0.0;
   for (int k = 0; k < 100; ++k) {
@@ -211,7 +213,7 @@ TEST_CASE("viscoelastic tissue relaxes in quasi-Newton steps as in Newton's", "[
   const auto mesh = promote<Tet10>(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}, BoxSplit::six));
   const Scene scene = Scene().fix("z0").touch("z1").traction("z1", {300.0, 0.0, -200.0});
   const auto body = [&] { return make_hyperelastic_body(mesh, std::vector<Law>{law}); };
-  ImplicitDynamics newton(make_deformable_body(body(), scene));
+  ImplicitDynamics newton(detail::make_deformable_body(body(), scene));
   const auto motion = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
                           body(), scene, {.settle = false, .maximum_iterations = 100, .tolerance = 1e-10}, {})
                           .motion;
@@ -333,9 +335,9 @@ TEST_CASE("a renewed factor changes the number of iterations, not where steps en
     const auto renewed = make(true), constant = make(false);
     renewed->set_prescribed(compressed);
     constant->set_prescribed(compressed);
-    const auto method_of = [](const TissueMotion& motion) -> const QuasiNewtonMotion& {
-      const auto* partly = dynamic_cast<const PartlyLinearMotion*>(&motion);
-      return static_cast<const QuasiNewtonMotion&>(partly != nullptr ? partly->near() : motion);
+    const auto method_of = [](const TissueMotion& motion) -> const detail::QuasiNewtonMotion& {
+      const auto* partly = dynamic_cast<const detail::PartlyLinearMotion*>(&motion);
+      return static_cast<const detail::QuasiNewtonMotion&>(partly != nullptr ? partly->near() : motion);
     };
     int iterations = 0, iterations_constant = 0;
     for (int k = 0; k < 400; ++k) {

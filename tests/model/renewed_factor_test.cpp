@@ -12,8 +12,8 @@ using namespace palpate;
 
 namespace {
 
-using Renewed = CorotatedMotion<LinearElastic, double, RenewedFactor>;
-using Rotated = CorotatedMotion<LinearElastic, double, CorotatedFactor>;
+using Renewed = detail::CorotatedMotion<LinearElastic, double, RenewedFactor>;
+using Rotated = detail::CorotatedMotion<LinearElastic, double, CorotatedFactor>;
 
 HyperelasticBody<Tet4, Corotational<LinearElastic>> column() {
   return make_hyperelastic_body(box_tet4({0.02, 0.02, 0.08}, {2, 2, 8}),
@@ -25,8 +25,9 @@ struct Twisting {
   Motion motion;
   int k = 0;
 
-  explicit Twisting(const CorotatedMotionOptions& options) : motion(column(), Scene().fix("z0").fix("z1"), options) {}
-  CorotatedStep move(double h) {
+  explicit Twisting(const detail::CorotatedMotionOptions& options)
+      : motion(column(), Scene().fix("z0").fix("z1"), options) {}
+  detail::CorotatedStep move(double h) {
     const double angle = std::min(2.5, 0.02 * ++k);
     VectorX constrained = VectorX::Zero(motion.size());
     for (Index i = 0; i < constrained.size() / 3; ++i) {
@@ -40,8 +41,8 @@ struct Twisting {
   }
 };
 
-CorotatedMotionOptions solved_well() {
-  CorotatedMotionOptions options;
+detail::CorotatedMotionOptions solved_well() {
+  detail::CorotatedMotionOptions options;
   options.solve = {200, 1e-10};
   options.precondition_every = 1;
   return options;
@@ -54,7 +55,7 @@ TEST_CASE("a renewed factor gives the same steps in fewer iterations", "[model][
   Twisting<Rotated> rotated(solved_well());
   long late = 0, late_rotated = 0;
   for (int k = 0; k < 200; ++k) {
-    const CorotatedStep a = renewed.move(0.02), b = rotated.move(0.02);
+    const detail::CorotatedStep a = renewed.move(0.02), b = rotated.move(0.02);
     REQUIRE(a.taken);
     CHECK((renewed.motion.displacement() - rotated.motion.displacement()).norm() <=
           1e-7 * rotated.motion.displacement().norm());

@@ -33,13 +33,13 @@ struct CorrectedCase {
   static constexpr int vertices = 6;
   std::vector<NodeId> nodes{0, 1, 2, 3, 4, 5};
   std::vector<Matrix3> rotation{static_cast<std::size_t>(vertices), Matrix3::Identity()};
-  VertexCompliance base;
-  SecantCompliance secants{vertices, 64};
-  SecantTerms terms;
+  detail::VertexCompliance base;
+  detail::SecantCompliance secants{vertices, 64};
+  detail::SecantTerms terms;
 
   CorrectedCase() {
     std::vector<Vector3> positions;
-    BlockPattern pattern;
+    detail::BlockPattern pattern;
     pattern.row_start.push_back(0);
     for (NodeId i = 0; i < vertices; ++i) {
       positions.push_back(Vector3(i % 2, i / 2, (i * i) % 5));
@@ -47,7 +47,8 @@ struct CorrectedCase {
       pattern.row_start.push_back(static_cast<Index>(pattern.column.size()));
     }
     MatrixMotion motion{random_compliance(3 * vertices, 3), VectorX::Zero(3 * vertices)};
-    base = VertexCompliance(WarpedCompliance(motion, 1.0, nodes, NodalRotations(pattern, positions, nodes), {}));
+    base = detail::VertexCompliance(
+        detail::WarpedCompliance(motion, 1.0, nodes, detail::NodalRotations(pattern, positions, nodes), {}));
     for (auto& term : terms.term) term.resize(vertices);
   }
   Matrix3 at(int i, int j) const {
@@ -86,7 +87,7 @@ TEST_CASE("the corrected compliance maps the last change of forces to its displa
     const VectorX u = truth * f, v = truth * g;
     c.secants.record(as_forces(f), as_forces(g), as_vectors(u), as_vectors(v), 0.0);
     c.secants.find_terms(c.base, c.rotation, c.terms);
-    CHECK(c.terms.count == std::min<std::size_t>(SecantTerms::most, static_cast<std::size_t>(step) + 1));
+    CHECK(c.terms.count == std::min<std::size_t>(detail::SecantTerms::most, static_cast<std::size_t>(step) + 1));
     const MatrixX corrected = c.all();
     CHECK((corrected * (g - f) - (v - u)).norm() <= 1e-10 * (v - u).norm());
     CHECK((corrected - corrected.transpose()).norm() <= 1e-12 * corrected.norm());

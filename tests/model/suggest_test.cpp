@@ -32,7 +32,7 @@ LinearElastic suggest_material() {
   return {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1000.0};
 }
 /// Enough time for slow builds.
-SuggestBudget ample(double error = 0.0) {
+detail::SuggestBudget ample(double error = 0.0) {
   return {.tick_seconds = 1.0, .setup_seconds = 1000.0, .error = error, .seconds = 1000.0, .places = 1};
 }
 
@@ -42,8 +42,8 @@ const Suggestion& suggest_once() {
   return made;
 }
 
-const SuggestedModel& find_suggested(const Suggestion& s, std::string_view element, bool refined) {
-  for (const SuggestedModel& m : s.candidates)
+const detail::SuggestedModel& find_suggested(const Suggestion& s, std::string_view element, bool refined) {
+  for (const detail::SuggestedModel& m : s.candidates)
     if (m.element == element && (m.edge > 0.0) == refined) return m;
   FAIL("there is no candidate " + std::string(element));
   return s.candidates.front();
@@ -51,8 +51,8 @@ const SuggestedModel& find_suggested(const Suggestion& s, std::string_view eleme
 
 /// Their order depends on the time that is predicted for each.
 void check_errors_of_once(const Suggestion& s) {
-  for (const SuggestedModel& expected : suggest_once().candidates) {
-    const auto same = std::ranges::find_if(s.candidates, [&](const SuggestedModel& m) {
+  for (const detail::SuggestedModel& expected : suggest_once().candidates) {
+    const auto same = std::ranges::find_if(s.candidates, [&](const detail::SuggestedModel& m) {
       return m.element == expected.element && m.edge == expected.edge;
     });
     CAPTURE(expected.name());
@@ -72,7 +72,7 @@ double typical_error(const Mesh<E>& mesh) {
 
 TEST_CASE("suggest measures every candidate, with the errors that their own set-up measures", "[suggest]") {
   const Suggestion& s = suggest_once();
-  for (const SuggestedModel& m : s.candidates) {
+  for (const detail::SuggestedModel& m : s.candidates) {
     CAPTURE(m.name(), m.remark);
     CHECK(m.measured);
     CHECK(m.tick > 0.0);
@@ -87,7 +87,7 @@ TEST_CASE("suggest measures every candidate, with the errors that their own set-
   CHECK(tet4 == Catch::Approx(typical_error<Tet4>(block)).epsilon(1e-3));
   CHECK(smoothed == Catch::Approx(typical_error<Smoothed<Tet4>>(copy_mesh<Smoothed<Tet4>>(block))).epsilon(1e-3));
   for (const double error : {tet4, smoothed, tet10}) CHECK(error < 0.05);
-  const SuggestedModel& refined = find_suggested(s, "Smoothed<Tet4>", true);
+  const detail::SuggestedModel& refined = find_suggested(s, "Smoothed<Tet4>", true);
   CHECK(refined.error < 0.05);
   CHECK(refined.nodes == refine_near_touched(block, suggest_scene(), refined.edge).node_count());
 }
@@ -96,7 +96,7 @@ TEST_CASE("suggest chooses the least error within the budget", "[suggest]") {
   const Suggestion& s = suggest_once();
   REQUIRE(s.chosen);
   CHECK(s.within_error);
-  for (const SuggestedModel& m : s.candidates) CHECK(s.candidates[*s.chosen].largest <= m.largest);
+  for (const detail::SuggestedModel& m : s.candidates) CHECK(s.candidates[*s.chosen].largest <= m.largest);
   CHECK(s.code().find("HapticFEModel<" + s.candidates[*s.chosen].element + ", LinearElastic") != std::string::npos);
 }
 
@@ -106,32 +106,32 @@ TEST_CASE("suggest chooses the shortest set-up among those with the wanted error
   const Suggestion s = suggest(suggest_block(), suggest_scene(), suggest_material(), ample(between));
   REQUIRE(s.chosen);
   CHECK(s.within_error);
-  const SuggestedModel& chosen = s.candidates[*s.chosen];
+  const detail::SuggestedModel& chosen = s.candidates[*s.chosen];
   CHECK(chosen.largest <= between);
-  for (const SuggestedModel& m : s.candidates)
+  for (const detail::SuggestedModel& m : s.candidates)
     if (m.largest <= between) CHECK(chosen.setup <= m.setup);
   const Suggestion exact = suggest(suggest_block(), suggest_scene(), suggest_material(), ample(1e-9));
   REQUIRE(exact.chosen);  // the nearest, and marked
   CHECK_FALSE(exact.within_error);
   CHECK(exact.reason.find("none has an error") != std::string::npos);
-  for (const SuggestedModel& m : exact.candidates) CHECK(exact.candidates[*exact.chosen].largest <= m.largest);
+  for (const detail::SuggestedModel& m : exact.candidates) CHECK(exact.candidates[*exact.chosen].largest <= m.largest);
 }
 
 TEST_CASE("suggest reports that nothing is within a budget", "[suggest]") {
-  SuggestBudget budget = ample();
+  detail::SuggestBudget budget = ample();
   budget.tick_seconds = 1e-9;
   const Suggestion slow = suggest(suggest_block(), suggest_scene(), suggest_material(), budget);
   CHECK_FALSE(slow.chosen);
   CHECK_FALSE(slow.within_error);
   CHECK(slow.reason.find("nothing is within the budget") != std::string::npos);
   CHECK(slow.code().starts_with("//"));
-  for (const SuggestedModel& m : slow.candidates) CHECK(m.remark.find("a tick takes") != std::string::npos);
+  for (const detail::SuggestedModel& m : slow.candidates) CHECK(m.remark.find("a tick takes") != std::string::npos);
 
   budget = ample();
   budget.setup_seconds = 1e-6;
   const Suggestion late = suggest(suggest_block(), suggest_scene(), suggest_material(), budget);
   CHECK_FALSE(late.chosen);
-  for (const SuggestedModel& m : late.candidates) CHECK_FALSE(m.remark.empty());
+  for (const detail::SuggestedModel& m : late.candidates) CHECK_FALSE(m.remark.empty());
   CHECK_FALSE(find_suggested(late, "Tet10", false).measured);
 
   budget = ample();
@@ -142,10 +142,10 @@ TEST_CASE("suggest reports that nothing is within a budget", "[suggest]") {
 }
 
 TEST_CASE("suggest refuses budgets and scenes that say too little", "[suggest]") {
-  const auto advice = [](const Scene& scene, const SuggestBudget& budget) {
+  const auto advice = [](const Scene& scene, const detail::SuggestBudget& budget) {
     return suggest(suggest_block(), scene, suggest_material(), budget);
   };
-  SuggestBudget budget;
+  detail::SuggestBudget budget;
   budget.tick_seconds = std::nan("");
   CHECK_REFUSED(SetupErrorKind::bad_argument, advice(suggest_scene(), budget));
   budget = {};
@@ -169,7 +169,7 @@ TEST_CASE("listed nodes become groups, which refinement completes", "[suggest]")
   REQUIRE(s.candidates.size() == suggest_once().candidates.size());
   check_errors_of_once(s);
   REQUIRE(s.chosen);
-  const SuggestedModel& chosen = s.candidates[*s.chosen];
+  const detail::SuggestedModel& chosen = s.candidates[*s.chosen];
   const bool refined = chosen.edge > 0.0 || chosen.element == "Tet10";
   CHECK((s.code().find("scene = name_listed_nodes(mesh, scene)") != std::string::npos) == refined);
 }

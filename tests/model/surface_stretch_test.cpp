@@ -10,7 +10,7 @@ using Catch::Matchers::WithinRel;
 
 TEST_CASE("the half-space of a surface at rest is unchanged, and rotates with it", "[model][surface_stretch]") {
   const std::vector<Vector3> rest{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-  SurfaceStretch stretch(rest, {{0, 1, 2}, {1, 3, 2}});
+  detail::SurfaceStretch stretch(rest, {{0, 1, 2}, {1, 3, 2}});
   const Matrix3 turn = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   std::vector<Vector3> now;
   for (const Vector3& p : rest) now.push_back(turn * p + Vector3(3, 2, 1));
@@ -21,7 +21,7 @@ TEST_CASE("the half-space of a surface at rest is unchanged, and rotates with it
 
 TEST_CASE("a stretched surface yields less, along itself least", "[model][surface_stretch]") {
   const std::vector<Vector3> rest{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  SurfaceStretch stretch(rest, {{0, 1, 2}});
+  detail::SurfaceStretch stretch(rest, {{0, 1, 2}});
   const double lambda = 1.5;
   std::vector<Vector3> now;
   for (const Vector3& p : rest) now.push_back(lambda * p);
@@ -31,5 +31,5 @@ TEST_CASE("a stretched surface yields less, along itself least", "[model][surfac
   // Green, Rivlin and Shield (1952): (38.44 + 11.39 + 10.125 - 1) / (2 x 5.0625 x 4.375), and distances
   CHECK_THAT(normal * normal, WithinRel(1.0 / (1.5 * 1.330996), 1e-5));
   CHECK_THAT(tangential, WithinRel(normal / (lambda * lambda), 1e-12));
-  CHECK(SurfaceStretch::softness(1.0) == 1.0);
+  CHECK(detail::SurfaceStretch::softness(1.0) == 1.0);
 }

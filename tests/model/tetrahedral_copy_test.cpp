@@ -46,8 +46,8 @@ double outer_area(const Mesh<Tet4>& mesh) {
 }
 
 template <class E>
-TetrahedralCopy box_copy(const Mesh<E>& mesh, Index elements) {
-  const auto copy = tetrahedral_copy(mesh_ref(mesh), [](Index e) { return static_cast<int>(e % 3); });
+detail::TetrahedralCopy box_copy(const Mesh<E>& mesh, Index elements) {
+  const auto copy = detail::tetrahedral_copy(mesh_ref(mesh), [](Index e) { return static_cast<int>(e % 3); });
   REQUIRE(copy);
   CHECK(copy->mesh.element_count() == elements);
   CHECK(tetrahedra_volume(copy->mesh) == Catch::Approx(copied_size.prod()).epsilon(1e-12));
@@ -62,7 +62,7 @@ TetrahedralCopy box_copy(const Mesh<E>& mesh, Index elements) {
 
 TEST_CASE("tetrahedra are copied as they are", "[tetrahedral_copy]") {
   const Mesh<Tet4> mesh = box_tet4(copied_size, copied_cells);
-  const TetrahedralCopy copy = box_copy(mesh, mesh.element_count());
+  const detail::TetrahedralCopy copy = box_copy(mesh, mesh.element_count());
   CHECK(copy.mesh.node_count() == mesh.node_count());
   const Mesh<Tet10> quadratic = promote<Tet10>(mesh);
   CHECK(box_copy(quadratic, mesh.element_count()).mesh.node_count() == mesh.node_count());
@@ -81,7 +81,7 @@ TEST_CASE("tetrahedra with a curved edge become eight each", "[tetrahedral_copy]
 TEST_CASE("hexahedra become twelve tetrahedra that conform", "[tetrahedral_copy]") {
   box_copy(box_hex8(copied_size, copied_cells), 12 * 12);
   const Mesh<Hex20> quadratic = box_hex20(copied_size, copied_cells);
-  const TetrahedralCopy copy = box_copy(quadratic, 12 * 12);
+  const detail::TetrahedralCopy copy = box_copy(quadratic, 12 * 12);
   CHECK(copy.mesh.node_count() == 4 * 3 * 3 + 12);  // corners, and a node in every element
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("an element of another kind has no copy", "[tetrahedral_copy]") {
   const Mesh<Hex8> mesh = box_hex8(copied_size, copied_cells);
   MeshRef other = mesh_ref(mesh);
   other.element.nodes = 6;
-  CHECK_FALSE(tetrahedral_copy(other, [](Index) { return 0; }));
+  CHECK_FALSE(detail::tetrahedral_copy(other, [](Index) { return 0; }));
 }
 
 TEST_CASE("a refined body is copied as the tetrahedra that were refined, in its own frame", "[tetrahedral_copy]") {
@@ -104,7 +104,7 @@ TEST_CASE("a refined body is copied as the tetrahedra that were refined, in its 
   const auto material = [&](Index e) { return 5 + fine.region(e); };
   std::vector<NodeId> map(fine.positions.size());
   std::iota(map.begin(), map.end(), 0);
-  const auto copy = coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, material);
+  const auto copy = detail::coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, material);
   REQUIRE(copy);
   REQUIRE(copy->mesh.element_count() == coarse.element_count());
   for (Index e = 0; e < coarse.element_count(); ++e) {
@@ -119,9 +119,10 @@ TEST_CASE("a refined body is copied as the tetrahedra that were refined, in its 
   }
   // Not the mesh that was refined, and a region with two materials.
   const Mesh<Tet4> other = box_tet4(copied_size + Vector3(0.01, 0.0, 0.0), copied_cells);
-  CHECK_FALSE(coarse_copy(mesh_ref(other), mesh_ref(fine), map, material));
+  CHECK_FALSE(detail::coarse_copy(mesh_ref(other), mesh_ref(fine), map, material));
   Mesh<Tet4> moved = coarse;
   moved.positions[3].z() += 1e-4;
-  CHECK_FALSE(coarse_copy(mesh_ref(moved), mesh_ref(fine), map, material));
-  CHECK_FALSE(coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, [](Index e) { return static_cast<int>(e % 2); }));
+  CHECK_FALSE(detail::coarse_copy(mesh_ref(moved), mesh_ref(fine), map, material));
+  CHECK_FALSE(
+      detail::coarse_copy(mesh_ref(coarse), mesh_ref(fine), map, [](Index e) { return static_cast<int>(e % 2); }));
 }

@@ -33,11 +33,11 @@ auto touch_block() {
 template <class Model>
 void check_weights_both_ways(Model& model) {
   const ContactSurface& surface = model.contact_surface();
-  const ContactSamples samples(surface, 2e-3);
+  const detail::ContactSamples samples(surface, 2e-3);
   std::vector<int> all(static_cast<std::size_t>(surface.vertex_count()));
   std::iota(all.begin(), all.end(), 0);
   REQUIRE(model.require_columns(all) == Status{});
-  const auto compliance = [&](const ContactSample& i, const ContactSample& j) {
+  const auto compliance = [&](const detail::ContactSample& i, const detail::ContactSample& j) {
     Matrix3 w = Matrix3::Zero();
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)

@@ -25,11 +25,11 @@ Mesh<E> block() {
 }
 
 template <Element E>
-Touchable touched(const Mesh<E>& mesh, const std::string& group) {
-  return resolve_touchable(mesh_ref(mesh), extract_boundary<E>(mesh), Scene().touch(group));
+detail::Touchable touched(const Mesh<E>& mesh, const std::string& group) {
+  return detail::resolve_touchable(mesh_ref(mesh), extract_boundary<E>(mesh), Scene().touch(group));
 }
 
-ContactSurface surface_of(const Touchable& touchable, const std::vector<Vector3>& positions) {
+ContactSurface surface_of(const detail::Touchable& touchable, const std::vector<Vector3>& positions) {
   std::vector<Vector3> of_vertices;
   for (NodeId node : touchable.nodes) of_vertices.push_back(positions[static_cast<std::size_t>(node)]);
   return {of_vertices, touchable.triangles};
@@ -40,7 +40,7 @@ ContactSurface surface_of(const Touchable& touchable, const std::vector<Vector3>
 TEMPLATE_TEST_CASE("the touchable triangles are the surface, closed and outward", "[model][touch]", Tet4, Tet10, Hex8,
                    Hex20) {
   const Mesh<TestType> mesh = block<TestType>();
-  const Touchable all = touched(mesh, "surface");
+  const detail::Touchable all = touched(mesh, "surface");
   CHECK(all.nodes == nodes_of(extract_boundary<TestType>(mesh)));
   const ContactSurface surface = surface_of(all, mesh.positions);
   Vector3 sum = Vector3::Zero();
@@ -57,7 +57,7 @@ TEMPLATE_TEST_CASE("the touchable triangles are the surface, closed and outward"
   CHECK_THAT(volume, Catch::Matchers::WithinRel(6.0, 1e-13));
   CHECK(surface.closest({1.4, 0.9, 0.9}).distance < 0.0);
   CHECK(surface.closest({1.4, 0.9, 1.1}).distance > 0.0);
-  const Touchable top = touched(mesh, "z1");
+  const detail::Touchable top = touched(mesh, "z1");
   CHECK(top.nodes == mesh.find_group("z1")->nodes);
   for (std::size_t t = 0; t < top.triangles.size(); ++t)
     CHECK(surface_of(top, mesh.positions).normal(static_cast<int>(t)) == Vector3(0, 0, 1));
@@ -69,13 +69,13 @@ TEMPLATE_TEST_CASE("contact weights are positive, sum to one, and carry force an
   testing::Random random(37);
   for (Vector3& x : mesh.positions) x += random.vector<3>(-0.05, 0.05);  // curved faces
   const ContactSurface surface = surface_of(touched(mesh, "surface"), mesh.positions);
-  const ContactSamples samples(surface, 0.2);
+  const detail::ContactSamples samples(surface, 0.2);
   REQUIRE(samples.count() > surface.vertex_count());
   const Vector3 force(0.3, -0.2, 1.0);
   Matrix3 gradient;
   for (int i = 0; i < 3; ++i) gradient.col(i) = random.vector<3>(-1.0, 1.0);
   for (int s = 0; s < samples.count(); ++s) {
-    const ContactSample& sample = samples[s];
+    const detail::ContactSample& sample = samples[s];
     double sum = 0.0, work = 0.0;
     Vector3 at = Vector3::Zero(), moved = Vector3::Zero(), moment = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) {

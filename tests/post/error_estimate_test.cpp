@@ -19,10 +19,10 @@ constexpr LinearElastic tissue{.youngs_modulus = 5e3, .poisson_ratio = 0.3};
 template <Element E, class Stress>
 double true_error(const Body<E>& body, const VectorX& u, Stress exact) {
   const Matrix6 compliance = body.elasticity.front().inverse();
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   double square = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e)
-    for (const StressPoint& point : state.template points<typename E::MassQuadrature>(e)) {
+    for (const detail::StressPoint& point : state.template points<typename E::MassQuadrature>(e)) {
       const Vector6 missed = exact(point.position) - point.stress;
       square += point.volume * missed.dot(compliance * missed);
     }

@@ -54,7 +54,7 @@ TEST_CASE("LE10 on the reference mesh: recovered stress between the values of tw
                           .prescribe("rim_midline", {std::nullopt, std::nullopt, 0.0})
                           .pressure("upper", 1e6);
   const auto solved = accuracy::solve_static(body, scene);
-  CHECK_THAT(0.5 * applied_load(body, extract_boundary<Tet10>(body.mesh), scene).dot(solved.displacement),
+  CHECK_THAT(0.5 * detail::applied_load(body, extract_boundary<Tet10>(body.mesh), scene).dot(solved.displacement),
              Catch::Matchers::WithinRel(169.336055304, 1e-9));
   // Extrapolated and averaged -5.479 MPa (CalculiX), projected -5.378 MPa (GetFEM).
   const double recovered = accuracy::le10_stress(body, solved.displacement);

@@ -85,10 +85,10 @@ double points_error(Mesh<E> mesh, int degree) {
   const Polynomial field(degree);
   const Body<E> body = body_of(std::move(mesh), {soft});
   const VectorX u = nodal_values(body.mesh, field);
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   double worst = 0.0, volume = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e)
-    for (const StressPoint& point : state.points(e)) {
+    for (const detail::StressPoint& point : state.points(e)) {
       volume += point.volume;
       worst = std::max(worst, (point.strain - field.strain(point.position)).cwiseAbs().maxCoeff());
       worst = std::max(worst, (point.stress - soft.elasticity() * point.strain).cwiseAbs().maxCoeff() / 5e3);
@@ -138,11 +138,11 @@ TEST_CASE("MeanDilatation: points have the strain of the element formulation", "
   const Body<Cured> body = body_of(jittered(box_of<Cured>({1, 1, 1}, {2, 2, 2}), 0.1), {{5e3, 0.499, 1.0}});
   VectorX u(3 * body.mesh.node_count());
   for (Index i = 0; i < u.size(); ++i) u[i] = random.uniform(-0.1, 0.1);
-  const ElementStress<Cured> state(body, u);
+  const detail::ElementStress<Cured> state(body, u);
   double energy = 0.0;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const auto points = state.points(e);
-    for (const StressPoint& point : points) {
+    for (const detail::StressPoint& point : points) {
       CHECK_THAT(point.strain.head<3>().sum(), Catch::Matchers::WithinAbs(points[0].strain.head<3>().sum(), 1e-14));
       energy += 0.5 * point.volume * point.strain.dot(point.stress);
     }

@@ -115,7 +115,7 @@ TEST_CASE("Mean and point stress of an element agree where the stress is constan
   const ElementNodes<Tet4> x = Tet4::reference_nodes() + 0.2 * random.vector<12>(-1.0, 1.0).reshaped(4, 3);
   const ElementNodes<Tet4> u = random.vector<12>(-0.1, 0.1).reshaped(4, 3);
   const Vector6 strain0 = random.vector<6>(-0.1, 0.1);
-  const MeanStress mean = mean_stress<Tet4>(x, u, gel.elasticity(), strain0);
+  const detail::MeanStress mean = detail::mean_stress<Tet4>(x, u, gel.elasticity(), strain0);
   const Vector6 point = point_stress<Tet4>(x, u, {0.1, 0.2, 0.3}, gel.elasticity(), strain0);
   CHECK((mean.stress - point).norm() <= 1e-12 * point.norm());
 }

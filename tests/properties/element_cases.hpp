@@ -175,9 +175,9 @@ double wave_error(int n) {
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const ElementNodes<E> x = element_nodes<E>(mesh, e);
       for (const auto& point : E::MassQuadrature::points) {
-        const Vector3 xi = reference_point(point);
+        const Vector3 xi = detail::reference_point(point);
         const auto shape = E::shape(xi);
-        visit(Vector3(x.transpose() * shape), point_geometry<E>(x, xi, point.weight).volume, shape,
+        visit(Vector3(x.transpose() * shape), detail::point_geometry<E>(x, xi, point.weight).volume, shape,
               mesh.elements[static_cast<std::size_t>(e)]);
       }
     }

@@ -149,7 +149,7 @@ TEST_CASE("M5: order of nodes, elements and corners", "[property][M5]") {
   };
   const auto to = shuffle(mesh.positions.size());
   Mesh<Tet4> other = mesh;
-  renumber_nodes(other, to);
+  detail::renumber_nodes(other, to);
   const auto order = shuffle(mesh.elements.size());
   auto elements = other.elements;
   for (std::size_t e = 0; e < order.size(); ++e) {

@@ -26,6 +26,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Spatial gradients [1/m] of all elements times the square root of the volume; K_ab is a sum of products of these. The
 /// same bits for any number of threads.
 template <ConstantGradient E>
@@ -41,7 +43,7 @@ class ScaledGradients {
       : mesh_(mesh), values_(static_cast<std::size_t>(mesh.element_count() * stride + 1)) {
     const Index count = mesh.element_count();
     std::vector<Index> refused(static_cast<std::size_t>(threads.threads()), count);  // per thread: the first element
-    detail::thread_ranges(count, 8192, threads, [&](int thread, Index begin, Index end) {
+    thread_ranges(count, 8192, threads, [&](int thread, Index begin, Index end) {
       Index& first = refused[static_cast<std::size_t>(thread)];
       for (Index e = begin; e < end && first == count; e += lanes) {
         const Index bad = fill(e, std::min<Index>(end - e, lanes));
@@ -114,8 +116,6 @@ class ScaledGradients {
   const Mesh<E>& mesh_;
   std::vector<double> values_;
 };
-
-namespace detail {
 
 /// Sums the rows of the stiffness one at a time. Per block and region it sums M = V g_a g_b^T, whose isotropic block is
 /// lambda M + mu M^T + mu tr M I, so that an element costs nine multiplications per block. No branch depends on the
@@ -198,8 +198,6 @@ class RowAssembly {
   std::vector<Pair> pairs_;
 };
 
-}  // namespace detail
-
 /// Fills `k`, which is zero, with the stiffness of isotropic elements. Every block is completed while its row is in
 /// cache; no element matrix is formed. Uses the threads of the limits, by rows: the same bits for any number. Allocates
 /// the gradients, and a number per node and thread.
@@ -210,12 +208,12 @@ void assemble_rows(const Mesh<E>& mesh, const NodeElements& around, const std::v
   const ScaledGradients<E> gradients(mesh, limits.threads);
   const Index rows = k.pattern().rows();
   const Index group = 8192 * Index{limits.threads.threads()};  // rows between two reports of progress
-  std::vector<detail::RowAssembly<E>> assembly;
+  std::vector<RowAssembly<E>> assembly;
   for (int thread = 0; thread < limits.threads.threads(); ++thread)
     assembly.emplace_back(mesh, around, gradients, region);
   for (Index first = 0; first < rows; first += group) {
     limits.advance("assembly", static_cast<double>(first) / static_cast<double>(rows));
-    detail::thread_ranges(std::min(group, rows - first), 4096, limits.threads, [&](int thread, Index begin, Index end) {
+    thread_ranges(std::min(group, rows - first), 4096, limits.threads, [&](int thread, Index begin, Index end) {
       for (Index i = first + begin; i < first + end; ++i) assembly[static_cast<std::size_t>(thread)].add_row(i, k);
     });
   }
@@ -247,22 +245,24 @@ void assemble_elements(const Body<E>& body, BlockMatrix& k, const SetupLimits& l
   }
 }
 
+}  // namespace detail
+
 /// Sums all element stiffnesses into the block pattern (thesis 3.37, 3.46). Throws inverted_element for a negative
 /// Jacobian and non_finite for an element whose stiffness is not finite. Allocates the pattern, the values and the
 /// workspace of assemble_rows.
 template <Element E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
-  const NodeElements around(body.mesh);
-  BlockMatrix k = make_stiffness(block_pattern(body.mesh, around), limits);
-  const auto constants =
-      body.materials.empty() ? all_isotropic(body.elasticity) : std::nullopt;  // per region, if all are isotropic
+  const detail::NodeElements around(body.mesh);
+  BlockMatrix k = detail::make_stiffness(detail::block_pattern(body.mesh, around), limits);
+  const auto constants = body.materials.empty() ? detail::all_isotropic(body.elasticity)
+                                                : std::nullopt;  // per region, if all are isotropic
   if (!constants)
-    assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
-  else if constexpr (ConstantGradient<E>)
-    assemble_rows<E>(body.mesh, around, *constants, k, limits);
+    detail::assemble_elements(body, k, limits, [&](Index e) -> const Matrix6& { return body.elasticity_of(e); });
+  else if constexpr (detail::ConstantGradient<E>)
+    detail::assemble_rows<E>(body.mesh, around, *constants, k, limits);
   else
-    assemble_elements(body, k, limits,
-                      [&](Index e) -> const LameConstants& { return (*constants)[body.region_of(e)]; });
+    detail::assemble_elements(body, k, limits,
+                              [&](Index e) -> const detail::LameConstants& { return (*constants)[body.region_of(e)]; });
   return k;
 }
 

@@ -13,6 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Node pairs that share an element: per row (node) the sorted columns <= row, the diagonal last. Computed once per
 /// mesh.
 struct BlockPattern {
@@ -39,14 +41,17 @@ BlockPattern block_pattern(const Mesh<E>& mesh) {
   return block_pattern(mesh_ref(mesh), NodeElements(mesh));
 }
 
+}  // namespace detail
+
 /// Values on a BlockPattern. Satisfies StiffnessOperator.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  explicit BlockMatrix(BlockPattern pattern) : pattern_(std::move(pattern)), values_(pattern_.column.size() * 9, 0.0) {}
+  explicit BlockMatrix(detail::BlockPattern pattern)
+      : pattern_(std::move(pattern)), values_(pattern_.column.size() * 9, 0.0) {}
 
   Index size() const noexcept { return 3 * pattern_.rows(); }
-  const BlockPattern& pattern() const noexcept { return pattern_; }
+  const detail::BlockPattern& pattern() const noexcept { return pattern_; }
   std::size_t bytes() const noexcept;
 
   /// Block at a position given by the pattern.
@@ -70,12 +75,16 @@ class BlockMatrix {
   std::vector<Matrix3> diagonal_blocks() const;
 
  private:
-  BlockPattern pattern_;
+  detail::BlockPattern pattern_;
   std::vector<double> values_;
 };
 
+namespace detail {
+
 /// A zero matrix on a pattern. Throws too_large.
 BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

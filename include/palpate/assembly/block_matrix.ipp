@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE BlockPattern block_pattern(const MeshRef& mesh, const NodeElements& around) {
   const Index n = mesh.node_count;
   const int per_element = mesh.element.nodes;
@@ -43,6 +45,8 @@ PALPATE_INLINE Index BlockPattern::find(NodeId row, NodeId col) const noexcept {
   const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
   return std::lower_bound(begin, end, col) - column.begin();
 }
+
+}  // namespace detail
 
 PALPATE_INLINE std::size_t BlockMatrix::bytes() const noexcept {
   return values_.size() * sizeof(double) + pattern_.column.size() * sizeof(NodeId) +
@@ -95,9 +99,13 @@ PALPATE_INLINE std::vector<Matrix3> BlockMatrix::diagonal_blocks() const {
   return d;
 }
 
+namespace detail {
+
 PALPATE_INLINE BlockMatrix make_stiffness(BlockPattern pattern, const SetupLimits& limits) {
   limits.require_memory(static_cast<double>(pattern.column.size()) * 9 * sizeof(double), "the stiffness");
   return BlockMatrix(std::move(pattern));
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

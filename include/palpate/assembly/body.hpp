@@ -38,6 +38,8 @@ struct Body {
   const Matrix6& elasticity_of(Index e) const noexcept { return elasticity[material_of(e)]; }
 };
 
+namespace detail {
+
 /// Throws with the id of one element.
 [[noreturn]] PALPATE_COLD void raise_element(SetupErrorKind kind, Index e, const char* what);
 
@@ -120,12 +122,14 @@ void add_fibre_laws(Body<E>& body, Elasticity elasticity) {
   }
 }
 
+}  // namespace detail
+
 /// An admitted mesh with one material per region, by region number, without initial strain. If the mesh has fibres and
 /// the material uses them, every element gets its own elasticity. Throws as require_material_per_region, and
 /// bad_argument for fibres that are not unit vectors.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
-  require_material_per_region(by_region, mesh);
+  detail::require_material_per_region(by_region, mesh);
   Body<E> body{std::move(mesh), {}, {}, {}};
   for (const M& material : by_region) {
     body.elasticity.push_back(material.elasticity());
@@ -133,9 +137,9 @@ Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
   }
   body.initial_strain.assign(by_region.size(), Vector6::Zero());
   if constexpr (FibreMaterial<M>) {
-    require_unit_fibres(body.mesh);
+    detail::require_unit_fibres(body.mesh);
     if (body.mesh.has_fibres())
-      add_fibre_laws(body, [&](std::size_t r, const Vector3& fibre) { return by_region[r].elasticity(fibre); });
+      detail::add_fibre_laws(body, [&](std::size_t r, const Vector3& fibre) { return by_region[r].elasticity(fibre); });
   }
   return body;
 }
@@ -143,7 +147,7 @@ Body<E> make_body(Mesh<E> mesh, const std::vector<M>& by_region) {
 /// The same with materials by region name; throws as materials_by_region.
 template <Element E, LinearMaterial M>
 Body<E> make_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
-  const std::vector<M> by_region = materials_by_region(mesh, materials);
+  const std::vector<M> by_region = detail::materials_by_region(mesh, materials);
   return make_body(std::move(mesh), by_region);
 }
 
@@ -153,8 +157,12 @@ Body<E> make_body(Mesh<E> mesh, const M& material) {
   return make_body(std::move(mesh), RegionMaterials<M>{{everywhere, material}});
 }
 
+namespace detail {
+
 inline void raise_element(SetupErrorKind kind, Index e, const char* what) {
   raise_at(SetupIds::elements, e, kind, std::string("an element ") + what);
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -17,6 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// The material of one element: along the element's own fibres if there are any, otherwise as given.
 template <HyperelasticMaterial M>
 class ElementMaterial {
@@ -52,6 +54,8 @@ class ElementMaterial {
   Triple<double> along_{};
   bool has_fibre_ = false;
 };
+
+}  // namespace detail
 /// A material for large strain, with or without viscoelastic history.
 template <class M>
 concept LargeStrainMaterial = HyperelasticMaterial<M> || ViscousMaterial<M>;
@@ -67,7 +71,7 @@ struct HyperelasticBody {
   /// and the material uses them. Refers to the body.
   decltype(auto) material_of(Index e) const noexcept {
     if constexpr (FibreHyperelasticMaterial<M>)
-      return ElementMaterial<M>(materials[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
+      return detail::ElementMaterial<M>(materials[rest.region_of(e)], uses_fibres() ? &rest.mesh.fibre(e) : nullptr);
     else
       return (materials[rest.region_of(e)]);
   }
@@ -79,7 +83,7 @@ struct HyperelasticBody {
 /// vectors, and unsupported for a viscoelastic material whose base uses fibres.
 template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_region) {
-  require_material_per_region(by_region, mesh);
+  detail::require_material_per_region(by_region, mesh);
   HyperelasticBody<E, M> body{{std::move(mesh), {}, {}, {}}, std::move(by_region)};
   for (const M& material : body.materials) {
     body.rest.elasticity.push_back(material.rest_elasticity());
@@ -91,15 +95,17 @@ HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, std::vector<M> by_re
             "Clear the mesh's fibres so that the material's own direction is used");
   body.rest.initial_strain.assign(body.materials.size(), Vector6::Zero());
   if constexpr (FibreHyperelasticMaterial<M>) {
-    require_unit_fibres(body.rest.mesh);
+    detail::require_unit_fibres(body.rest.mesh);
     for (Vector3& fibre : body.rest.mesh.fibres) fibre.normalize();
     if (body.rest.mesh.has_fibres())
-      add_fibre_laws(body.rest, [&](std::size_t r, const Vector3& a) {
+      detail::add_fibre_laws(body.rest, [&](std::size_t r, const Vector3& a) {
         return body.materials[r].rest_elasticity(Triple<double>{a[0], a[1], a[2]});
       });
   }
   return body;
 }
+
+namespace detail {
 
 /// For forces that support one fibre direction per region only: throws for a material with fibres on a mesh with fibre
 /// directions.
@@ -110,10 +116,12 @@ void require_no_fibres(const HyperelasticBody<E, M>& body) {
           "Use LargeStrain, or clear the mesh's fibres so that the material's own direction is used");
 }
 
+}  // namespace detail
+
 /// With materials by region name; throws as materials_by_region.
 template <Element E, LargeStrainMaterial M>
 HyperelasticBody<E, M> make_hyperelastic_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
-  std::vector<M> by_region = materials_by_region(mesh, materials);
+  std::vector<M> by_region = detail::materials_by_region(mesh, materials);
   return make_hyperelastic_body(std::move(mesh), std::move(by_region));
 }
 

@@ -103,9 +103,9 @@ struct PointHistory<M, Points> {
 /// integration point, plus the viscoelastic history. Vectors have 3 entries per node, all dofs. Only the constructor
 /// allocates; sums run by element, so results do not depend on threads.
 template <Element E, LargeStrainMaterial M>
-class LargeStrain final : public ElasticForces {
+class LargeStrain final : public detail::ElasticForces {
  public:
-  static_assert(!HasSmoothedStrain<E> && !HasMeanDilatation<E>,
+  static_assert(!detail::HasSmoothedStrain<E> && !detail::HasMeanDilatation<E>,
                 "palpate: Smoothed and MeanDilatation average small strains; choose Tet10 or Hex20, or "
                 "Implicit<QuasiNewton<>> for Smoothed<Tet4>");
   static constexpr bool has_history = ViscousMaterial<M>;
@@ -114,17 +114,18 @@ class LargeStrain final : public ElasticForces {
   explicit LargeStrain(HyperelasticBody<E, M> body, const SetupLimits& limits = {}) : body_(std::move(body)) {
     const Mesh<E>& mesh = body_.rest.mesh;
     limits.require_memory(static_cast<double>(mesh.element_count()) * sizeof(Points), "the gradients at rest");
-    probe_length_ = std::sqrt(std::numeric_limits<double>::epsilon()) * shortest_edge(mesh);
+    probe_length_ = std::sqrt(std::numeric_limits<double>::epsilon()) * detail::shortest_edge(mesh);
     points_.resize(static_cast<std::size_t>(mesh.element_count()));
     for (Index e = 0; e < mesh.element_count(); ++e) {
       const ElementNodes<E> x = element_nodes<E>(mesh, e);
-      if (!is_positively_oriented<E>(x))
-        raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
+      if (!detail::is_positively_oriented<E>(x))
+        detail::raise_element(SetupErrorKind::inverted_element, e, "has a negative Jacobian at an integration point");
       for (std::size_t q = 0; q < point_count; ++q) {
         const auto& point = E::Quadrature::points[q];
-        PointGeometry<E>& g = points_[static_cast<std::size_t>(e)][q];
-        g = point_geometry<E>(x, reference_point(point), point.weight);
-        if (!g.gradient.allFinite()) raise_element(SetupErrorKind::non_finite, e, "has gradients that are not finite");
+        detail::PointGeometry<E>& g = points_[static_cast<std::size_t>(e)][q];
+        g = detail::point_geometry<E>(x, detail::reference_point(point), point.weight);
+        if (!g.gradient.allFinite())
+          detail::raise_element(SetupErrorKind::non_finite, e, "has gradients that are not finite");
       }
     }
     history_.start(body_, limits);
@@ -139,7 +140,7 @@ class LargeStrain final : public ElasticForces {
     double sum = 0.0;
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);
-      for (const PointGeometry<E>& g : points_of(e)) {
+      for (const detail::PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         const auto& material = material_at(e, g);
         if (!material.admits(f)) return infinity;
@@ -158,8 +159,8 @@ class LargeStrain final : public ElasticForces {
       const Displacements ue = displacements(e, u);
       Displacements fe = Displacements::Zero();
       bool inverted = false, beyond = false;
-      detail::MostStrained<PointGeometry<E>> most;
-      for (const PointGeometry<E>& g : points_of(e)) {
+      detail::MostStrained<detail::PointGeometry<E>> most;
+      for (const detail::PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         inverted = !observe(determinant(f), e, report) || inverted;
         const auto& material = material_at(e, g);
@@ -185,7 +186,7 @@ class LargeStrain final : public ElasticForces {
     k.set_zero();
     for (Index e = 0; e < mesh().element_count(); ++e) {
       const Displacements ue = displacements(e, u);
-      for (const PointGeometry<E>& g : points_of(e)) {
+      for (const detail::PointGeometry<E>& g : points_of(e)) {
         const Tensor3<double> f = deformation_gradient(ue, g);
         if (const auto& material = material_at(e, g); material.admits(f)) add_tangent(e, g, material.tangent(f), k);
       }
@@ -202,22 +203,22 @@ class LargeStrain final : public ElasticForces {
     if constexpr (has_history)
       for (Index e = 0; e < mesh().element_count(); ++e) {
         const Displacements ue = displacements(e, u);
-        for (const PointGeometry<E>& g : points_of(e))
+        for (const detail::PointGeometry<E>& g : points_of(e))
           history_.update_history(body_, e, number_of(e, g), deformation_gradient(ue, g));
       }
   }
 
  private:
   static constexpr std::size_t point_count = E::Quadrature::points.size();
-  using Points = std::array<PointGeometry<E>, point_count>;
+  using Points = std::array<detail::PointGeometry<E>, point_count>;
   using Displacements = Eigen::Matrix<double, 3, E::nodes>;  // one per column
   using TangentBlock = Eigen::Matrix<double, 9, 3>;
 
-  std::size_t number_of(Index e, const PointGeometry<E>& g) const noexcept {
+  std::size_t number_of(Index e, const detail::PointGeometry<E>& g) const noexcept {
     return static_cast<std::size_t>(&g - points_of(e).data());
   }
   /// The material of a point; with viscoelastic history, that of the current step.
-  decltype(auto) material_at(Index e, const PointGeometry<E>& g) const noexcept {
+  decltype(auto) material_at(Index e, const detail::PointGeometry<E>& g) const noexcept {
     return history_.material(body_, e, number_of(e, g));
   }
   const Points& points_of(Index e) const noexcept { return points_[static_cast<std::size_t>(e)]; }
@@ -227,7 +228,7 @@ class LargeStrain final : public ElasticForces {
     for (int a = 0; a < E::nodes; ++a) ue.col(a) = u.template segment<3>(3 * Index{mesh().element_node(e, a)});
     return ue;
   }
-  static Tensor3<double> deformation_gradient(const Displacements& u, const PointGeometry<E>& g) noexcept {
+  static Tensor3<double> deformation_gradient(const Displacements& u, const detail::PointGeometry<E>& g) noexcept {
     Matrix3 f = Matrix3::Identity();
     f.noalias() += u * g.gradient;
     return tensor3<double>(f);
@@ -241,7 +242,7 @@ class LargeStrain final : public ElasticForces {
   }
 
   /// K_ab += dV grad N_a . A . grad N_b; rows and columns of A are i + 3 j for F_ij.
-  void add_tangent(Index e, const PointGeometry<E>& g, const Matrix9& a9, BlockMatrix& k) const noexcept {
+  void add_tangent(Index e, const detail::PointGeometry<E>& g, const Matrix9& a9, BlockMatrix& k) const noexcept {
     for (int b = 0; b < E::nodes; ++b) {
       TangentBlock right = TangentBlock::Zero();
       for (int l = 0; l < 3; ++l) right += g.volume * g.gradient(b, l) * a9.template middleCols<3>(3 * l);

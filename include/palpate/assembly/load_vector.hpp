@@ -18,6 +18,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Coordinates of a boundary face's nodes, one per row [m].
 template <FaceElement F, Element E>
 FaceNodes<F> face_nodes(const Mesh<E>& mesh, const BoundaryFace& face) {
@@ -28,8 +30,6 @@ FaceNodes<F> face_nodes(const Mesh<E>& mesh, const BoundaryFace& face) {
   }
   return x;
 }
-
-namespace detail {
 
 /// Integrals of shape functions over elements and faces, given by node ids, for code that is independent of the
 /// element type. One number, or x y z, per node; `positions` stores x y z of every node of the mesh.
@@ -86,18 +86,20 @@ VectorX nodal_mass(const Body<E>& body) {
   return detail::nodal_mass(mesh_ref(body.mesh), detail::shape_integrals<E>, body.density);
 }
 
+namespace detail {
+
 /// Tractions, pressures, point loads and body loads of a scene, without gravity: 3 entries per node [N]. Throws
 /// unknown_group, empty_group or unsupported (a load on an inner face).
 template <Element E>
 VectorX applied_load(const Body<E>& body, const std::vector<BoundaryFace>& boundary, const Scene& scene) {
-  return detail::applied_load(mesh_ref(body.mesh), detail::shape_integrals<E>, boundary, scene);
+  return applied_load(mesh_ref(body.mesh), shape_integrals<E>, boundary, scene);
 }
 
 /// Load f_0 of initial strains per region, those of the body if none are given (3.28, 3.45): 3 entries per node [N].
 template <Element E>
 VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& strains) {
   VectorX f = VectorX::Zero(3 * body.mesh.node_count());
-  if (!detail::any_strain(strains)) return f;
+  if (!any_strain(strains)) return f;
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     const auto fe =
         initial_strain_load<E>(element_nodes<E>(body.mesh, e), body.elasticity_of(e), strains[body.region_of(e)]);
@@ -119,6 +121,8 @@ std::vector<Vector6> initial_strains_by_region(const Mesh<E>& mesh, const Scene&
   return initial_strains_by_region(mesh_ref(mesh), scene);
 }
 
+}  // namespace detail
+
 /// Stored energy [J]: 1/2 sum_q (epsilon - epsilon_0) : D : (epsilon - epsilon_0) dV for nodal displacements u (3
 /// entries per node [m]).
 template <Element E>
@@ -129,8 +133,8 @@ double strain_energy(const Body<E>& body, const VectorX& u) {
     ElementNodes<E> ue;
     for (int a = 0; a < E::nodes; ++a)
       for (int c = 0; c < 3; ++c) ue(a, c) = u[3 * Index{body.mesh.element_node(e, a)} + c];
-    for (const IntegrationPoint<E>& point : integration_points<E>(x)) {
-      const Vector6 elastic = strain_at<E>(point, ue) - body.initial_strain[body.region_of(e)];
+    for (const detail::IntegrationPoint<E>& point : detail::integration_points<E>(x)) {
+      const Vector6 elastic = detail::strain_at<E>(point, ue) - body.initial_strain[body.region_of(e)];
       energy += 0.5 * point.volume * elastic.dot(body.elasticity_of(e) * elastic);
     }
   }

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 inline void add_face_loads(const MeshRef& mesh, const ShapeIntegrals& integrals,
                            const std::vector<BoundaryFace>& boundary, const Scene& scene, VectorX& f) {
@@ -65,8 +63,6 @@ PALPATE_INLINE bool any_strain(const std::vector<Vector6>& strains) noexcept {
   return !std::ranges::all_of(strains, [](const Vector6& s) { return s.isZero(0.0); });
 }
 
-}  // namespace detail
-
 PALPATE_INLINE std::vector<Vector6> initial_strains_by_region(const MeshRef& mesh, const Scene& scene) {
   std::vector<Vector6> strains(mesh.region_names.size(), Vector6::Zero());
   for (const auto& s : scene.initial_strains()) {
@@ -77,4 +73,4 @@ PALPATE_INLINE std::vector<Vector6> initial_strains_by_region(const MeshRef& mes
   return strains;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

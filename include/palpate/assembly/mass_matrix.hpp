@@ -19,6 +19,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// The consistent mass matrix [kg]: one number per pair of neighbouring nodes, lower half stored; every block is that
 /// number times the identity. A ninth of the memory of a BlockMatrix.
 class MassMatrix {
@@ -44,8 +46,6 @@ class MassMatrix {
   std::vector<double> values_;
 };
 
-namespace detail {
-
 /// Throws for an invalid mass: an inverted element, or numbers that are not finite.
 inline void require_mass(double volume, double mass, Index e) {
   if (!std::isfinite(mass)) raise_element(SetupErrorKind::non_finite, e, "has a mass that is not finite");
@@ -57,15 +57,15 @@ inline void require_mass(double volume, double mass, Index e) {
 /// Consistent mass of a body (thesis 3.48). Total mass, centre of mass and inertia of a rigid motion are exact. Throws
 /// inverted_element, non_finite or too_large. O(elements x nodes_per_element^2), allocates the pattern and the values.
 template <Element E>
-MassMatrix assemble_mass(const Body<E>& body, const SetupLimits& limits = {}) {
-  BlockPattern pattern = block_pattern(body.mesh);
+detail::MassMatrix assemble_mass(const Body<E>& body, const SetupLimits& limits = {}) {
+  detail::BlockPattern pattern = detail::block_pattern(body.mesh);
   limits.require_memory(static_cast<double>(pattern.column.size()) * sizeof(double), "the mass");
-  MassMatrix m(std::move(pattern));
+  detail::MassMatrix m(std::move(pattern));
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
     if (e % 8192 == 0)
       limits.advance("assembly", static_cast<double>(e) / static_cast<double>(body.mesh.element_count()));
-    const ElementMass<E> volumes = element_mass<E>(element_nodes<E>(body.mesh, e));
-    const ElementMass<E> me = body.density[body.region_of(e)] * volumes;
+    const detail::ElementMass<E> volumes = detail::element_mass<E>(element_nodes<E>(body.mesh, e));
+    const detail::ElementMass<E> me = body.density[body.region_of(e)] * volumes;
     detail::require_mass(volumes.sum(), me.sum(), e);
     const auto& nodes = body.mesh.elements[static_cast<std::size_t>(e)];
     for (int a = 0; a < E::nodes; ++a)
@@ -84,13 +84,15 @@ template <Element E>
 VectorX lumped_mass(const Body<E>& body) {
   VectorX mass = VectorX::Zero(body.mesh.node_count());
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
-    const auto volumes = lumped_element_mass<E>(element_nodes<E>(body.mesh, e));
+    const auto volumes = detail::lumped_element_mass<E>(element_nodes<E>(body.mesh, e));
     const double density = body.density[body.region_of(e)];
     detail::require_mass(volumes.sum(), density * volumes.sum(), e);
     for (int a = 0; a < E::nodes; ++a) mass[body.mesh.element_node(e, a)] += density * volumes[a];
   }
   return mass;
 }
+
+namespace detail {
 
 /// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows
 /// ascending within a column; used by free_matrix.
@@ -130,5 +132,7 @@ inline void MassMatrix::apply(const VectorX& x, VectorX& y) const noexcept {
     y[3 * i + 2] += y2;
   }
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

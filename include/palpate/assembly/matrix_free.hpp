@@ -17,6 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// K x by gathering each element's displacements, computing its stress and scattering its nodal forces. Stores only
 /// gradients and volumes.
 template <Element E>
@@ -94,14 +96,16 @@ class MatrixFreeStiffness<E> : public SmoothedStiffness<E> {
   using SmoothedStiffness<E>::SmoothedStiffness;
 };
 
+}  // namespace detail
+
 /// Stores no matrix, only the gradients and volumes of the elements; for iterative solvers.
 struct MatrixFree {
   template <Element E>
-  using Operator = MatrixFreeStiffness<E>;
+  using Operator = detail::MatrixFreeStiffness<E>;
 
   template <Element E>
-  static MatrixFreeStiffness<E> make(const Body<E>& body, const SetupLimits& limits) {
-    return MatrixFreeStiffness<E>(body, limits);
+  static detail::MatrixFreeStiffness<E> make(const Body<E>& body, const SetupLimits& limits) {
+    return detail::MatrixFreeStiffness<E>(body, limits);
   }
 };
 

@@ -45,11 +45,12 @@ class SmoothedTetrahedra {
   SmoothedTetrahedra() = default;
   /// Throws as make_batches.
   explicit SmoothedTetrahedra(const HyperelasticBody<Smoothed<Tet4>, M>& body, const SetupLimits& limits = {})
-      : layout_(make_batches<S, N>(body, 350.0, limits)), materials_(body.materials) {
-    for (const Matrix6& d : body.rest.elasticity) bulk_.push_back(static_cast<S>(bulk_modulus(d)));
+      : layout_(detail::make_batches<S, N>(body, 350.0, limits)), materials_(body.materials) {
+    for (const Matrix6& d : body.rest.elasticity) bulk_.push_back(static_cast<S>(detail::bulk_modulus(d)));
     average(body.rest.mesh, limits);
     make_room();
-    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+    probe_length_ =
+        std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * detail::shortest_edge(body.rest.mesh);
   }
 
   /// Follows a cut: `mesh` has the elements of the constructor, some with other nodes (copies of nodes, at the same
@@ -88,7 +89,7 @@ class SmoothedTetrahedra {
     const double energy = find_stresses();
     report.beyond_range = range_.count();
     report.admissible = std::isfinite(energy);
-    for (const TetrahedronBlock& block : layout_.blocks) add_forces(block);
+    for (const detail::TetrahedronBlock& block : layout_.blocks) add_forces(block);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
     return energy;
   }
@@ -103,10 +104,10 @@ class SmoothedTetrahedra {
   }
 
  private:
-  using Number = Lanes<S, N>;
-  using Batch = TetrahedronBatch<S, N>;
+  using Number = detail::Lanes<S, N>;
+  using Batch = detail::TetrahedronBatch<S, N>;
   using Gradient = Tensor3<Number>;
-  using Averages = StrainAverages<S, N>;
+  using Averages = detail::StrainAverages<S, N>;
   static constexpr int row_size = Averages::row_size, pressure_place = 9;  // in the row of an edge
 
   /// U and dU/dJ.
@@ -140,11 +141,13 @@ class SmoothedTetrahedra {
       for (std::size_t lane = 0; lane < N; ++lane)
         if (const NodeId e = layout_.elements[b][lane]; e >= 0) {
           place_[static_cast<std::size_t>(e)] = static_cast<std::int32_t>(b * N + lane);
-          volumes[static_cast<std::size_t>(e)] = volume_[b * N + lane] = constant_geometry(mesh, Index{e}).volume;
+          volumes[static_cast<std::size_t>(e)] = volume_[b * N + lane] =
+              detail::constant_geometry(mesh, Index{e}).volume;
         }
-    const StrainDomains<Smoothed<Tet4>> domains(mesh, NodeElements(mesh), limits, DomainContents::elements);
-    edges_ = Averages(domains, StrainPart::deviatoric, place_, volumes);
-    nodes_ = Averages(domains, StrainPart::volumetric, place_, volumes);
+    const detail::StrainDomains<Smoothed<Tet4>> domains(mesh, detail::NodeElements(mesh), limits,
+                                                        detail::DomainContents::elements);
+    edges_ = Averages(domains, detail::StrainPart::deviatoric, place_, volumes);
+    nodes_ = Averages(domains, detail::StrainPart::volumetric, place_, volumes);
     edges_of_.assign(6 * places, 0);
     nodes_of_.assign(4 * places, 0);
     fill(edges_, 6, edges_of_);
@@ -192,7 +195,7 @@ class SmoothedTetrahedra {
   /// F and det F of all elements.
   DeformationReport find_gradients(const VectorX& u) noexcept {
     DeformationReport report;
-    for (const TetrahedronBlock& block : layout_.blocks) {
+    for (const detail::TetrahedronBlock& block : layout_.blocks) {
       detail::VolumeWatch<S, N> watch;
       layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
         const auto b = static_cast<std::size_t>(&batch - layout_.batches.data());
@@ -260,7 +263,7 @@ class SmoothedTetrahedra {
     else
       return select(j > zero, energy, Number(std::numeric_limits<S>::infinity()));
   }
-  void add_forces(const TetrahedronBlock& block) noexcept {
+  void add_forces(const detail::TetrahedronBlock& block) noexcept {
     S* const forces = layout_.cleared(block, rows_);
     for (Index i = block.first_batch; i < block.first_batch + block.batch_count; ++i) {
       const auto b = static_cast<std::size_t>(i);
@@ -268,7 +271,7 @@ class SmoothedTetrahedra {
       Number pressure;
       for (int lane = 0; lane < N; ++lane) {
         const std::size_t place = b * N + static_cast<std::size_t>(lane);
-        using Row = Lanes<S, 4>;
+        using Row = detail::Lanes<S, 4>;
         Row sum[3] = {Row(S(0)), Row(S(0)), Row(S(0))};
         for (std::size_t k = 0; k < 6; ++k) {
           const S* const from = stresses_.data() + row_size * std::ptrdiff_t{edges_of_[6 * place + k]};
@@ -284,7 +287,7 @@ class SmoothedTetrahedra {
     }
   }
 
-  TetrahedronBatches<S, N> layout_;
+  detail::TetrahedronBatches<S, N> layout_;
   std::vector<M> materials_;  // by region
   std::vector<S> bulk_;       // by region [Pa]
   Averages edges_, nodes_;

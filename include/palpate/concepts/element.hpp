@@ -59,6 +59,8 @@ concept Element = requires(const Vector3& xi) {
 template <class E>
 concept HasSmallFace = Element<E> && FaceElement<typename E::SmallFace> && (E::SmallFace::nodes < E::Face::nodes);
 
+namespace detail {
+
 /// Whether all faces of E can be touched.
 template <Element E>
 constexpr bool has_triangulated_faces() noexcept {
@@ -92,6 +94,8 @@ constexpr decltype(auto) with_face_element([[maybe_unused]] std::size_t nodes, V
       return visit.template operator()<typename E::SmallFace>();
   return visit.template operator()<typename E::Face>();
 }
+
+}  // namespace detail
 
 /// Coordinates of the nodes of one element, one node per row.
 template <class E>

@@ -56,6 +56,8 @@ concept ExplicitScheme = requires(MotionState& state, double dt, void (*refresh)
   { I::order } -> std::convertible_to<int>;
 };
 
+namespace detail {
+
 /// A potential of `size()` unknowns to be minimised.
 /// - `evaluate(x, residual)` writes the residual force (minus the gradient) and returns the potential; infinity if x is
 /// outside its domain (the residual is then not read).
@@ -72,5 +74,7 @@ concept NewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   { p.scale() } noexcept -> std::convertible_to<double>;
   { p.rounding() } noexcept -> std::convertible_to<double>;
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

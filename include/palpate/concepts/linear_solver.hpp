@@ -15,6 +15,8 @@ struct SolveReport {
   double relative_residual = 0.0;  ///< |b - K x| / |b|, recomputed, not the recursive one; NaN when not computed
 };
 
+namespace detail {
+
 /// A symmetric positive definite operator on vectors of `size()` entries: `apply` computes y = K x without allocating,
 /// `precondition` y = P^-1 x for some cheap P.
 template <class Op>
@@ -23,6 +25,8 @@ concept SpdOperator = requires(const Op& op, const VectorX& x, VectorX& y) {
   { op.apply(x, y) } noexcept;
   { op.precondition(x, y) } noexcept;
 };
+
+}  // namespace detail
 
 /// The stiffness of all dofs of a mesh, constrained ones included (x y z per node). `apply` computes y = K x [N]
 /// without allocating; `diagonal_blocks` returns the 3 x 3 block of every node. Laws: testing/assembler_laws.hpp.

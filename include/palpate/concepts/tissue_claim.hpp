@@ -7,7 +7,7 @@
 #include <atomic>
 #include <memory>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Whether a servo uses a tissue that can have one only: its surface or compliance changes between ticks, and the forces
 /// that a tick leaves replace those of the last one. A tissue with a function `TissueClaim& claim() noexcept` is refused to a
@@ -45,4 +45,4 @@ class ClaimedTissue {
   TissueClaim::Taken taken_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

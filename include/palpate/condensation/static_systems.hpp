@@ -17,7 +17,7 @@ class Uncondensed {
  public:
   Uncondensed() = default;
   /// `kept` lists the free dofs whose compliance is needed. Accepts any copyable LinearSolver.
-  Uncondensed(AnySolver solver, std::vector<Index> kept);
+  Uncondensed(detail::AnySolver solver, std::vector<Index> kept);
 
   /// Writes the solver; writes nothing if the solver cannot be stored.
   void write(BinaryWriter& out) const { solver_.write(out); }
@@ -32,14 +32,14 @@ class Uncondensed {
   SolveReport compliance_column(Index j, VectorX& column) noexcept;
 
  private:
-  AnySolver solver_;
+  detail::AnySolver solver_;
   std::vector<Index> kept_;
   VectorX load_, answer_;
 };
 
 static_assert(StaticSystem<Uncondensed>);
 
-inline Uncondensed::Uncondensed(AnySolver solver, std::vector<Index> kept)
+inline Uncondensed::Uncondensed(detail::AnySolver solver, std::vector<Index> kept)
     : solver_(std::move(solver)),
       kept_(std::move(kept)),
       load_(detail::zeros(solver_.size())),
@@ -75,7 +75,7 @@ class CondensedSystem {
   /// Builds the system with solver `Dense`: DenseCholesky, DenseInverse or DenseConjugateGradient. Throws as the
   /// constructor of `Dense`.
   template <DenseSolver Dense>
-  static CondensedSystem with(SchurComplement schur, const SetupLimits& limits) {
+  static CondensedSystem with(detail::SchurComplement schur, const SetupLimits& limits) {
     limits.advance("compliance", 0.0);
     CondensedSystem made(std::move(schur.interior), schur.stiffness.rows());
     made.dense_ = Dense(std::move(schur.stiffness), limits);
@@ -86,7 +86,7 @@ class CondensedSystem {
   /// Reads what `write` stored of a system with this analysis, solved by `Dense`; valid only when the reader is good.
   /// Throws too_large.
   template <DenseSolver Dense>
-  static CondensedSystem read(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits) {
+  static CondensedSystem read(BinaryReader& in, detail::CholeskyAnalysis analysis, const SetupLimits& limits) {
     CondensedSystem read = read_interior(in, std::move(analysis), limits);
     if (is_good(in)) read.dense_ = Dense::read(in, read.kept(), limits);
     return read;
@@ -106,11 +106,11 @@ class CondensedSystem {
 
  private:
   CondensedSystem(SparseCholesky interior, Index kept);
-  static CondensedSystem read_interior(BinaryReader& in, CholeskyAnalysis analysis, const SetupLimits& limits);
+  static CondensedSystem read_interior(BinaryReader& in, detail::CholeskyAnalysis analysis, const SetupLimits& limits);
   static bool is_good(const BinaryReader& in) noexcept;
 
   SparseCholesky interior_;
-  AnySolver dense_;
+  detail::AnySolver dense_;
   VectorX kept_load_, kept_answer_;
 };
 
@@ -124,7 +124,7 @@ inline void CondensedSystem::write(BinaryWriter& out) const {
   dense_.write(out);
 }
 
-inline CondensedSystem CondensedSystem::read_interior(BinaryReader& in, CholeskyAnalysis analysis,
+inline CondensedSystem CondensedSystem::read_interior(BinaryReader& in, detail::CholeskyAnalysis analysis,
                                                       const SetupLimits& limits) {
   const auto kept = static_cast<Index>(analysis.kept().size());
   return {SparseCholesky::read(in, std::move(analysis), true, limits), kept};

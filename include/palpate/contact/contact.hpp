@@ -44,6 +44,8 @@ struct ContactParameters {
   ContactParameters for_tools(std::size_t tools, bool large_strain = false) const noexcept;
 };
 
+namespace detail {
+
 /// The point of a tool's core closest to another point. The core is the centre of a sphere, the segment of a capsule or
 /// the hull of a convex tool: the tool is all points within its radius of the core.
 struct CorePoint {
@@ -52,6 +54,8 @@ struct CorePoint {
                                      ///< face, reversed
   double distance = 0.0;             ///< [m], negative inside a hull; convex
 };
+
+}  // namespace detail
 
 /// A tool as the contact problem represents it, in the model's frame.
 struct ContactTool {
@@ -87,7 +91,7 @@ struct ContactTool {
   Matrix3 goal_rotation() const noexcept;
   Vector3 axis() const noexcept;
   /// The point of the core closest to `p`.
-  CorePoint closest(const Vector3& p) const noexcept {
+  detail::CorePoint closest(const Vector3& p) const noexcept {
     if (outward.squaredNorm() > 0.0) return closest_pressed(p);
     return half_length > 0.0 ? closest_extended(p) : from_core(p, proxy, Vector3(0.0, 0.0, 0.0));
   }
@@ -123,14 +127,14 @@ struct ContactTool {
  private:
   // Of the rim of the cap, from `outward` reversed: 60 degrees.
   static constexpr double cone_cosine = 0.5, cone_sine = 0.8660254037844386;
-  CorePoint closest_extended(const Vector3& p) const noexcept;
-  CorePoint closest_pressed(const Vector3& p) const noexcept;
+  detail::CorePoint closest_extended(const Vector3& p) const noexcept;
+  detail::CorePoint closest_pressed(const Vector3& p) const noexcept;
   double along_cone(const Vector3& p, const Vector3& direction) const noexcept;
   double along_capsule(const Vector3& p, const Vector3& direction) const noexcept {
     return std::clamp(direction.dot(p - proxy), -half_length, half_length);
   }
   /// For a point of the core in the model's frame, and in the tool's own.
-  static CorePoint from_core(const Vector3& p, const Vector3& core, const Vector3& own) noexcept {
+  static detail::CorePoint from_core(const Vector3& p, const Vector3& core, const Vector3& own) noexcept {
     const Vector3 offset = core - p;
     const double distance = offset.norm();
     return {own, distance > 0.0 ? Vector3(offset / distance) : Vector3(0.0, 0.0, 1.0), distance};

@@ -42,7 +42,7 @@ PALPATE_INLINE Matrix3 ContactTool::goal_rotation() const noexcept {
 PALPATE_INLINE Vector3 ContactTool::axis() const noexcept {
   return rotation * own_axis;
 }
-PALPATE_INLINE CorePoint ContactTool::closest_extended(const Vector3& p) const noexcept {
+PALPATE_INLINE detail::CorePoint ContactTool::closest_extended(const Vector3& p) const noexcept {
   if (hull != nullptr) {
     const ConvexHull::Closest on = hull->closest(rotation.transpose() * (p - proxy));
     return {on.point, -(rotation * on.outward), on.distance};
@@ -66,12 +66,12 @@ PALPATE_INLINE double ContactTool::along_cone(const Vector3& p, const Vector3& d
 /// side. Material that it entered is therefore kept from its cap and from the cone that is tangent to it: no normal is
 /// farther from `outward` than the rim of the cap. On plane tissue nothing is beyond that rim until the tool is about
 /// a radius deep. A capsule has the cap and cone of a sphere at every point of its axis.
-PALPATE_INLINE CorePoint ContactTool::closest_pressed(const Vector3& p) const noexcept {
+PALPATE_INLINE detail::CorePoint ContactTool::closest_pressed(const Vector3& p) const noexcept {
   const bool is_capsule = half_length > 0.0;
   const Vector3 direction = is_capsule ? axis() : Vector3(0.0, 0.0, 0.0);
   const auto core = [&](double along) -> Vector3 { return proxy + along * direction; };
   const double own_along = along_capsule(p, direction);
-  const CorePoint own = from_core(p, core(own_along), own_along * own_axis);
+  const detail::CorePoint own = from_core(p, core(own_along), own_along * own_axis);
   if (own.normal.dot(outward) >= cone_cosine || outward.dot(p - core(own_along)) > entered) return own;
   const Vector3 from = core(is_capsule ? along_cone(p, direction) : 0.0);
   const double height = outward.dot(p - from);

@@ -79,7 +79,7 @@ class ContactProblem {
   bool has_fewer_points(std::size_t t) const noexcept { return levels_.had_fewer(static_cast<int>(t)); }
   /// What the error of a force on a tool is relative to [N]: detail/contact_rows.hpp.
   double scale_of_force(std::size_t t, double force) const noexcept {
-    return force_scale(force, rows_.pressing_force(t));
+    return detail::force_scale(force, rows_.pressing_force(t));
   }
   /// Penetration of the deepest contact point that has no row because more points press than the capacity, relative to
   /// the deepest push. The force is too small by that part of the true force, or less. 0 when every point has a row.
@@ -88,10 +88,10 @@ class ContactProblem {
   bool is_holding(std::size_t tool) const noexcept { return grasps_[tool].holds_any(); }
 
  private:
-  using Tools = ProxyMotion::Tools;
+  using Tools = detail::ProxyMotion::Tools;
   struct Violated {
     double gap;
-    Candidate* candidate;
+    detail::Candidate* candidate;
   };
   /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
   static constexpr int vertices_per_contact = 12;
@@ -111,14 +111,15 @@ class ContactProblem {
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static ContactParameters checked(const ContactParameters& p);
   inline Vector3 middle_of_print(std::size_t t) const noexcept;
-  Candidate* point_to_grasp(const TissueView& tissue, const ContactTool& tool, std::size_t t) noexcept;
+  detail::Candidate* point_to_grasp(const TissueView& tissue, const ContactTool& tool, std::size_t t) noexcept;
   Status grasp(const TissueView& tissue, Tools tools) noexcept;
   bool pin_pads() noexcept;
   bool presses_beside_pad(std::size_t t) const noexcept;
-  inline bool is_grasped(const ContactSurface& surface, const Candidate& c) const noexcept;
-  inline bool may_have_row(const Candidate& c) const noexcept;
-  inline void set_area(Candidate& c) const noexcept;
-  static ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii, const ContactParameters& p);
+  inline bool is_grasped(const ContactSurface& surface, const detail::Candidate& c) const noexcept;
+  inline bool may_have_row(const detail::Candidate& c) const noexcept;
+  inline void set_area(detail::Candidate& c) const noexcept;
+  static detail::ContactSamples made_samples(const ContactSurface& surface, const ToolRadii& radii,
+                                             const ContactParameters& p);
   inline void set_levels(Tools tools) noexcept;
   Status update_candidates(const TissueView& tissue, Tools tools) noexcept;
   std::array<double, maximum_tools> vertices_of_print(const ContactSurface& surface) const noexcept;
@@ -150,10 +151,10 @@ class ContactProblem {
                   const ContactTool& tool, ForceError& error) const noexcept;
   double error_of_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
                          std::size_t t, const ContactTool& tool) const noexcept;
-  inline static double distance_from_support(const LinearModelError& model, const Contact& c) noexcept;
+  inline static double distance_from_support(const detail::LinearModelError& model, const Contact& c) noexcept;
   void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
-                        std::size_t t, SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
-  inline void note_pressing(Candidate& c) noexcept;
+                        std::size_t t, detail::SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
+  inline void note_pressing(detail::Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
   void follow(const TissueView& tissue, Tools tools) noexcept;
@@ -164,14 +165,14 @@ class ContactProblem {
   bool has_converged(Tools tools, int iteration, double before, double& change) noexcept;
 
   ContactParameters parameters_;
-  SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started
-  Candidates candidates_;
-  ContactRows rows_;
+  detail::SurfaceDisplacement displacement_, start_;  // now; where the last linearisation started
+  detail::Candidates candidates_;
+  detail::ContactRows rows_;
   std::vector<PointForce> on_points_;
-  std::vector<Candidate*> pressing_;  // those of the last linearisation
+  std::vector<detail::Candidate*> pressing_;  // those of the last linearisation
   std::vector<Violated> violated_;
-  ProxyMotion proxies_;
-  PointLevels levels_;
+  detail::ProxyMotion proxies_;
+  detail::PointLevels levels_;
   std::array<Grasp, maximum_tools> grasps_{};
   std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;

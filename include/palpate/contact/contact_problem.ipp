@@ -25,7 +25,7 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
       violated_(at(candidates_.maximum())),
       on_body_(surface.body_count() > 1 ? at(parameters_.capacity) : 0) {
   on_points_.reserve(at(parameters_.capacity));
-  require_dense_points(surface, radii.smallest);
+  detail::require_dense_points(surface, radii.smallest);
 }
 
 PALPATE_INLINE std::span<const PointForce> ContactProblem::point_forces() noexcept {
@@ -52,17 +52,18 @@ PALPATE_INLINE ContactParameters ContactProblem::checked(const ContactParameters
   return p;
 }
 
-inline bool ContactProblem::is_grasped(const ContactSurface& surface, const Candidate& c) const noexcept {
+inline bool ContactProblem::is_grasped(const ContactSurface& surface, const detail::Candidate& c) const noexcept {
   return grasps_[at(c.tool)].holds(surface, candidates_, c);
 }
 
 /// Fine enough for the first touch of the smallest tool; coarse enough for the largest at depths about its radius.
-PALPATE_INLINE ContactSamples ContactProblem::made_samples(const ContactSurface& surface, const ToolRadii& radii,
-                                                           const ContactParameters& p) {
+PALPATE_INLINE detail::ContactSamples ContactProblem::made_samples(const ContactSurface& surface,
+                                                                   const ToolRadii& radii, const ContactParameters& p) {
   if (p.subfacet_compliance && surface.subfacet() != nullptr)
-    return {surface, PointLevels::finest_spacing * radii.smallest, PointLevels::crowded_spacing * radii.largest_scale};
+    return {surface, detail::PointLevels::finest_spacing * radii.smallest,
+            detail::PointLevels::crowded_spacing * radii.largest_scale};
   const double finest = p.sample_spacing * radii.smallest;
-  return {surface, finest, std::max(finest, PointLevels::coarsest_of_mesh * radii.largest)};
+  return {surface, finest, std::max(finest, detail::PointLevels::coarsest_of_mesh * radii.largest)};
 }
 
 /// Whether tools have contact points near them.
@@ -74,7 +75,7 @@ inline std::array<bool, maximum_tools> ContactProblem::are_near(Tools tools) con
 
 /// Divides the rows among these tools.
 PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept {
-  std::array<PointLevels::Size, maximum_tools> sizes{};
+  std::array<detail::PointLevels::Size, maximum_tools> sizes{};
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) sizes[t] = {tools[t].radius, tools[t].point_scale()};
   levels_.begin_tick(candidates_.samples(), sizes, near,
@@ -88,7 +89,7 @@ PALPATE_INLINE void ContactProblem::start_levels(const TissueView& tissue, Tools
   std::array<double, maximum_tools> area{};
   for (std::size_t t = 0; t < tools.size(); ++t) begins[t] = tools[t].active && rows_.pressing_force(t) == 0.0;
   if (std::none_of(begins.begin(), begins.end(), [](bool b) { return b; })) return;
-  for (Candidate& c : candidates_.items()) {
+  for (detail::Candidate& c : candidates_.items()) {
     if (!begins[at(c.tool)] || candidates_.least_gap(c) > 0.0) continue;
     if (candidates_.is_stale(c)) {
       if (candidates_.raise_least_gap(tissue, tools[at(c.tool)], displacement_, c) > 0.0) continue;
@@ -109,7 +110,7 @@ inline std::array<double, maximum_tools> ContactProblem::vertices_of_print(
   const SubfacetCompliance* const rest = candidates_.subfacet();
   if (!surface.has_large_strain() || rest == nullptr) return vertices;
   for (int i = 0; i < static_cast<int>(rows_.contacts().size()); ++i) {
-    const Candidate& c = rows_.candidate(i);
+    const detail::Candidate& c = rows_.candidate(i);
     const Triangle& t = surface.triangle(c.triangle);
     if (!(c.force > 0.0) || c.grasped || !std::all_of(t.begin(), t.end(), [&](int v) { return rest->has_place(v); }))
       continue;
@@ -120,16 +121,16 @@ inline std::array<double, maximum_tools> ContactProblem::vertices_of_print(
 }
 
 /// A grasped point keeps the area that it had when it was grasped: its force does not change then.
-inline void ContactProblem::set_area(Candidate& c) const noexcept {
+inline void ContactProblem::set_area(detail::Candidate& c) const noexcept {
   if (!c.grasped) c.area = candidates_.samples().area(c.sample, levels_.level(c.tool));
 }
 
-inline bool ContactProblem::may_have_row(const Candidate& c) const noexcept {
+inline bool ContactProblem::may_have_row(const detail::Candidate& c) const noexcept {
   return candidates_.samples().level_of(c.sample) >= levels_.first(c.tool);
 }
 
 /// Of a tool with more pressing points than its share, those of its level with the largest forces are kept.
-inline void ContactProblem::note_pressing(Candidate& c) noexcept {
+inline void ContactProblem::note_pressing(detail::Candidate& c) noexcept {
   c.row = -1;
   if (c.grasped || !(c.force > 0.0)) return;
   if (!may_have_row(c)) return c.lift();
@@ -139,9 +140,9 @@ inline void ContactProblem::note_pressing(Candidate& c) noexcept {
     pressing_[at(pressing_count_++)] = &c;
     return;
   }
-  Candidate** weakest = nullptr;
+  detail::Candidate** weakest = nullptr;
   for (int i = 0; i < pressing_count_; ++i) {
-    Candidate*& other = pressing_[at(i)];
+    detail::Candidate*& other = pressing_[at(i)];
     if (other->tool == c.tool && other->force < (weakest == nullptr ? c : **weakest).force) weakest = &other;
   }
   if (weakest == nullptr) return c.lift();
@@ -184,7 +185,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   set_outward(tissue.contact_surface(), tools);
   rows_.begin_tick(tissue.compliance_revision());
   displacement_.begin_tick(tissue.compliance_revision());
-  ProxyMotion::slide(tools);
+  detail::ProxyMotion::slide(tools);
   if (candidates_.begin_tick(tissue.contact_surface(), tools)) {
     displacement_.forget();
     start_.forget();
@@ -310,7 +311,7 @@ PALPATE_INLINE double ContactProblem::missing_depth() const noexcept {
 
 /// Whether a tool presses the point of a row, and does not hold it.
 PALPATE_INLINE bool ContactProblem::presses(std::size_t t, int row) const noexcept {
-  const Candidate& c = rows_.candidate(row);
+  const detail::Candidate& c = rows_.candidate(row);
   return c.tool == static_cast<int>(t) && !c.grasped && c.force > 0.0;
 }
 
@@ -320,7 +321,7 @@ PALPATE_INLINE double ContactProblem::force_on_rim(const TissueView& tissue, std
   double all = 0.0, on_rim = 0.0;
   for (int row = 0; row < rows_.count(); ++row) {
     if (!presses(t, row)) continue;
-    const Candidate& point = rows_.candidate(row);
+    const detail::Candidate& point = rows_.candidate(row);
     const Contact& c = rows_.contacts()[at(row)];
     all += c.force;
     double beside = 1.0;  // weights of vertices that are not on the rim
@@ -347,7 +348,7 @@ PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue
   double all = 0.0, behind = 0.0;
   for (int row = 0; row < rows_.count(); ++row) {
     if (!presses(t, row)) continue;
-    const Candidate& c = rows_.candidate(row);
+    const detail::Candidate& c = rows_.candidate(row);
     all += c.force;
     if (!candidates_.faces_sphere(tissue, displacement_, c)) behind += c.force;
   }
@@ -373,13 +374,13 @@ PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const Kn
     on_body_[count++] = c;
   }
   own.rows = {on_body_.data(), count};
-  own.scale = force_scale(own.force.norm(), sum);
+  own.scale = detail::force_scale(own.force.norm(), sum);
   own.depth = depth_of(work, own.scale, own.force, tool);
   return own;
 }
 
 /// Distance of a contact point from the nearest constrained node, interpolated from its vertices [m].
-inline double ContactProblem::distance_from_support(const LinearModelError& model, const Contact& c) noexcept {
+inline double ContactProblem::distance_from_support(const detail::LinearModelError& model, const Contact& c) noexcept {
   double distance = 0.0;
   for (std::size_t a = 0; a < 3; ++a) distance += c.weights[a] * model.supports[at(c.vertices[a])];
   return distance;
@@ -389,8 +390,9 @@ inline double ContactProblem::distance_from_support(const LinearModelError& mode
 /// small: all of the depth then counts as indentation.
 PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
                                                      const BodyContacts& contacts, std::size_t t,
-                                                     SphereIndentation sphere, ForceErrorParts& parts) const noexcept {
-  const LinearModelError& model = *body.model;
+                                                     detail::SphereIndentation sphere,
+                                                     ForceErrorParts& parts) const noexcept {
+  const detail::LinearModelError& model = *body.model;
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
   const bool is_sparse = has_fewer_points(t) && error_of_points(t) > flagged_error;
   if (late_ || missing_depth() > 0.0 || is_sparse) sphere.force = infinity;
@@ -412,7 +414,7 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.storage += model.storage * sum * sum / sphere.depth;
   parts.conditioning += model.conditioning * sum * sum / sphere.depth;
   sphere.depth += levels_.deepest();  // points without rows sink in
-  parts.linearity += contacts.scale * linearity_error(sphere, model.body_size);
+  parts.linearity += contacts.scale * detail::linearity_error(sphere, model.body_size);
 }
 
 /// Whether the force is more than a tenth too large because a thin body has too few elements across it to bend. Their
@@ -423,7 +425,7 @@ PALPATE_INLINE bool ContactProblem::bends_coarse_elements(const ContactSurface& 
   double all = 0.0, error = 0.0, area = 0.0, modulus = 0.0;
   for (int row = 0; row < rows_.count(); ++row) {
     if (!presses(t, row)) continue;
-    const Candidate& c = rows_.candidate(row);
+    const detail::Candidate& c = rows_.candidate(row);
     all += c.force;
     area += c.area;
     if (const double own = rows_.bending_error(row); own > 0.0) {
@@ -447,7 +449,7 @@ PALPATE_INLINE bool ContactProblem::presses_edge(const ContactSurface& surface, 
   double all = 0.0, at_edge = 0.0;
   for (int row = 0; row < rows_.count(); ++row) {
     if (!presses(t, row)) continue;
-    const Candidate& c = rows_.candidate(row);
+    const detail::Candidate& c = rows_.candidate(row);
     all += c.force;
     if (rows_.edge_nearness(row) > 1.0 && surface.facet_length(c.triangle) > longest) at_edge += c.force;
   }
@@ -464,7 +466,8 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   constexpr double coarse = 0.6, long_facet = 0.75, usual_depth = 0.125;
   constexpr double deep = 0.4, long_for_deep = 0.65;  // radii
   const double depth = std::max(indentation(t, tool), usual_depth * tool.radius);
-  constexpr double very_long = ContactSamples::maximum_subdivision * 2.0 * PointLevels::finest_spacing;  // radii
+  constexpr double very_long =
+      detail::ContactSamples::maximum_subdivision * 2.0 * detail::PointLevels::finest_spacing;  // radii
   double longest = tool.radius / coarse;
   const bool is_deep = surface.has_large_strain() && depth > deep * tool.radius;
   const double shown = is_deep ? deep * tool.radius : depth;  // a deeper dent does not allow longer facets
@@ -474,7 +477,7 @@ PALPATE_INLINE bool ContactProblem::presses_coarse_facets(const ContactSurface& 
   int points = 0;  // with an area
   for (int row = 0; row < rows_.count(); ++row) {
     if (!presses(t, row)) continue;
-    const Candidate& c = rows_.candidate(row);
+    const detail::Candidate& c = rows_.candidate(row);
     all += c.force;
     points += rows_.has_area(row);
     const auto is_longer = [fourth_power = surface.double_area_squared(c.triangle)](double length) {
@@ -605,15 +608,15 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
 
 PALPATE_INLINE ContactSurface::Closest ContactProblem::closest(const TissueView& tissue, const Vector3& position,
                                                                double distance) noexcept {
-  return closest_deformed(tissue, displacement_, candidates_.subfacet(), position,
-                          distance + 2.0 * candidates_.reach(tissue, displacement_));
+  return detail::closest_deformed(tissue, displacement_, candidates_.subfacet(), position,
+                                  distance + 2.0 * candidates_.reach(tissue, displacement_));
 }
 
 PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const ContactSurface& surface) noexcept {
   displacement_.move_to(fresh.displacement_);
   start_.move_to(fresh.start_);
   candidates_.move_to(fresh.candidates_, surface);
-  const auto renumber = [&](PointLoad& load) {
+  const auto renumber = [&](detail::PointLoad& load) {
     load.sample = candidates_.samples().nearest(surface, fresh.candidates_.samples()[load.sample], 0);
     if (load.sample < 0) return false;
     load.point = candidates_.half_space_point(load.sample);
@@ -654,11 +657,11 @@ inline Vector3 ContactProblem::middle_of_print(std::size_t t) const noexcept {
 
 /// The point that a tool grasps: of those that it presses the one nearest to their middle, since the gaps of all of
 /// them are zero but for rounding; else the nearest one within its reach, or null.
-PALPATE_INLINE Candidate* ContactProblem::point_to_grasp(const TissueView& tissue, const ContactTool& tool,
-                                                         std::size_t t) noexcept {
+PALPATE_INLINE detail::Candidate* ContactProblem::point_to_grasp(const TissueView& tissue, const ContactTool& tool,
+                                                                 std::size_t t) noexcept {
   const Vector3 middle = middle_of_print(t);
-  Candidate *pressed = nullptr, *nearest = nullptr;
-  for (Candidate& c : candidates_.items()) {
+  detail::Candidate *pressed = nullptr, *nearest = nullptr;
+  for (detail::Candidate& c : candidates_.items()) {
     if (c.tool != static_cast<int>(t)) continue;
     if (candidates_.is_stale(c)) candidates_.evaluate(tissue, tool, displacement_, c);
     if (!c.facing || !(c.gap <= Grasp::reach * tool.radius)) continue;
@@ -680,7 +683,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     if (!tool.active || !tool.grasping || g.requested) continue;
     g.requested = true;
     constexpr double grasped_spacing = 0.25;  // radii; a single point holds at least so much of the surface
-    Candidate* const point = point_to_grasp(tissue, tool, t);
+    detail::Candidate* const point = point_to_grasp(tissue, tool, t);
     if (point == nullptr) continue;
     point->area = std::max({point->area, candidates_.samples().area(point->sample, levels_.level(point->tool)),
                             std::pow(grasped_spacing * tool.radius, 2)});
@@ -700,7 +703,7 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
 
 /// Whether the vertices of all pads are others than before.
 PALPATE_INLINE bool ContactProblem::pin_pads() noexcept {
-  std::array<int, Candidates::most_pinned> vertices;
+  std::array<int, detail::Candidates::most_pinned> vertices;
   std::size_t count = 0;
   for (const Grasp& g : grasps_)
     for (const int v : g.pad()) vertices[count++] = v;
@@ -713,8 +716,8 @@ PALPATE_INLINE bool ContactProblem::pin_pads() noexcept {
 /// Passes the vertices near the spheres to a tissue that prefetches.
 PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept {
   if (!tissue.prefetches()) return;
-  for (const Candidate& c : candidates_.items()) {
-    const ContactSample& sample = candidates_.sample_of(c);
+  for (const detail::Candidate& c : candidates_.items()) {
+    const detail::ContactSample& sample = candidates_.sample_of(c);
     for (std::size_t a = 0; a < 3; ++a)
       if (sample.weights[a] > 0.0) tissue.prefetch({&sample.vertices[a], 1});
   }
@@ -730,10 +733,10 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
   predict_normals(iteration);
   rows_.clear();
   for (std::size_t t = 0; t < tools.size(); ++t)
-    for (Candidate& c : grasps_[t].rows())
+    for (detail::Candidate& c : grasps_[t].rows())
       if (rows_.count() < rows_.capacity()) rows_.add(tissue, candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
-    Candidate& c = *pressing_[at(i)];
+    detail::Candidate& c = *pressing_[at(i)];
     if (rows_.count() < rows_.capacity() && !is_grasped(tissue.contact_surface(), c))
       rows_.add(tissue, candidates_, c);
     else
@@ -780,12 +783,12 @@ PALPATE_INLINE void ContactProblem::gather_pressing(const TissueView& tissue, To
   pressing_count_ = 0;
   pressing_of_.fill(0);
   if (candidates_.is_new()) {
-    for (Candidate& c : candidates_.items()) note_pressing(c);
+    for (detail::Candidate& c : candidates_.items()) note_pressing(c);
   } else {
     for (int i = 0; i < rows_.count(); ++i) note_pressing(rows_.candidate(i));
   }
   for (int i = 0; i < pressing_count_; ++i) {
-    Candidate& c = *pressing_[at(i)];
+    detail::Candidate& c = *pressing_[at(i)];
     const ContactTool& tool = tools[at(c.tool)];
     set_area(c);
     if (arrived_) {
@@ -805,7 +808,7 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   constexpr double most_before = 0.4;
   double back = 0.0, changed = 0.0;
   for (int i = 0; i < pressing_count_ && iteration >= 2; ++i) {
-    const Candidate& c = *pressing_[at(i)];
+    const detail::Candidate& c = *pressing_[at(i)];
     if (c.history.known < 2) continue;
     const Vector3 before = c.history.used - c.history.used_before;
     back += c.force * before.dot(c.normal - c.history.made_before);
@@ -814,7 +817,7 @@ PALPATE_INLINE void ContactProblem::predict_normals(int iteration) noexcept {
   if (changed > 1e-16) feedback_ = std::clamp(back / changed, 0.0, largest_feedback);
   const double ratio = std::min(std::min(feedback_, most_feedback_), iteration < 2 ? most_before : largest_feedback);
   for (int i = 0; i < pressing_count_; ++i) {
-    Candidate& c = *pressing_[at(i)];
+    detail::Candidate& c = *pressing_[at(i)];
     const Vector3 made = c.normal;
     if (c.history.known > 0) c.normal = (made + ratio / (1.0 - ratio) * (made - c.history.used)).normalized();
     c.history = {c.normal, c.history.used, made, std::min(c.history.known + 1, 2)};
@@ -845,16 +848,16 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   const double unnoticed = violation * rows_.deepest_push();  // by the force
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
-  for (Candidates::Near& near : candidates_.within(reaches, tools)) {
+  for (detail::Candidates::Near& near : candidates_.within(reaches, tools)) {
     const double reach = reaches[at(near.tool)];
     if (candidates_.least_gap(near) > reach) continue;
-    Candidate& c = candidates_.items()[at(near.number)];
+    detail::Candidate& c = candidates_.items()[at(near.number)];
     candidates_.note_gap(near);
     if (c.row >= 0 || candidates_.least_gap(c) > reach) continue;
     const bool is_finer = !may_have_row(c);
     if ((is_finer && levels_.has_areas()) || is_grasped(tissue.contact_surface(), c)) continue;
     const ContactTool& tool = tools[at(c.tool)];
-    const ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
+    const detail::ProxyMotion::Ahead& ahead = proxies_.ahead(at(c.tool));
     if (candidates_.is_stale(c)) {
       const bool is_far = candidates_.raise_least_gap(tissue, tool, start_, c) > reach;
       if (!is_far) candidates_.evaluate(tissue, tool, start_, c);
@@ -895,7 +898,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   std::partial_sort(violated_.begin(), violated_.begin() + adding, end,
                     [](const Violated& a, const Violated& b) { return a.gap < b.gap; });
   for (int i = 0; i < adding; ++i) {
-    Candidate& c = *violated_[at(i)].candidate;
+    detail::Candidate& c = *violated_[at(i)].candidate;
     if (own[at(c.tool)] >= levels_.share(c.tool)) continue;
     ++own[at(c.tool)];
     set_area(c);

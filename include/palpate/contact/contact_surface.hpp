@@ -24,13 +24,13 @@ class ExpectedSurface {
 
   bool is_known() const noexcept { return !positions_.empty(); }
   const Vector3& position(int v) const noexcept { return positions_[static_cast<std::size_t>(v)]; }
-  const Bvh& bvh() const noexcept { return bvh_; }
+  const detail::Bvh& bvh() const noexcept { return bvh_; }
   /// The vertices with forces.
   std::span<const int> loaded() const noexcept { return {loaded_.data(), count_}; }
 
   /// Sets positions and forces. `resting`: of the same triangles. Allocates at the first call and when there are more
   /// vertices than before. O(vertices + triangles).
-  void set(const Bvh& resting, std::span<const Triangle> triangles, std::span<const Vector3> positions,
+  void set(const detail::Bvh& resting, std::span<const Triangle> triangles, std::span<const Vector3> positions,
            std::span<const VertexForce> forces) {
     if (positions_.size() != positions.size()) {
       positions_.resize(positions.size());
@@ -45,7 +45,7 @@ class ExpectedSurface {
 
  private:
   std::vector<Vector3> positions_;
-  Bvh bvh_;
+  detail::Bvh bvh_;
   std::vector<int> loaded_;  // the first count_
   std::size_t count_ = 0;
 };
@@ -63,7 +63,7 @@ struct ContactMaterial {
 struct KnownErrors {
   int first = 0, end = 0;
   const ForceAccuracy* accuracy = nullptr;
-  const LinearModelError* model = nullptr;
+  const detail::LinearModelError* model = nullptr;
 };
 
 /// Vertices and outward triangles of the touchable surface, at rest under its loads and without tools.
@@ -80,7 +80,7 @@ class ContactSurface {
   const Triangle& triangle(int t) const noexcept { return triangles_[static_cast<std::size_t>(t)]; }
   /// Unit outward normal of a triangle.
   const Vector3& normal(int t) const noexcept { return normals_[static_cast<std::size_t>(t)]; }
-  const Bvh& bvh() const noexcept { return bvh_; }
+  const detail::Bvh& bvh() const noexcept { return bvh_; }
   /// Numbers of the triangles at a vertex.
   std::span<const int> triangles_at(int v) const noexcept {
     const auto i = static_cast<std::size_t>(v);
@@ -120,7 +120,7 @@ class ContactSurface {
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
   /// Sets what is known about the other errors of a linear model.
-  void set_model_error(LinearModelError error) noexcept { model_error_ = std::move(error); }
+  void set_model_error(detail::LinearModelError error) noexcept { model_error_ = std::move(error); }
   /// Sets both for a surface that joins those of several bodies, whose vertices follow each other. Allocates when there
   /// are more bodies than before; for set-up.
   void set_known_errors(std::span<const KnownErrors> bodies) { bodies_.assign(bodies.begin(), bodies.end()); }
@@ -182,7 +182,7 @@ class ContactSurface {
   /// Whether the boundary has no rim.
   bool is_closed() const noexcept { return !boundary().has_rim_; }
   /// Whether an edge or vertex of a triangle is on the rim of the touchable surface.
-  bool is_rim(int t, TriangleFeature feature) const noexcept;
+  bool is_rim(int t, detail::TriangleFeature feature) const noexcept;
   /// Whether a vertex is on the rim of the touchable surface.
   bool is_rim_vertex(int v) const noexcept { return vertex_kind_[static_cast<std::size_t>(v)] == VertexKind::rim; }
   /// Whether the shell goes on at a vertex of the rim, with a facet within 60 degrees of a unit direction: a tool there
@@ -190,10 +190,10 @@ class ContactSurface {
   bool goes_on(int v, const Vector3& direction) const noexcept;
 
  private:
-  inline TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
-  inline Vector3 point_on(int t, const TrianglePoint& on) const noexcept;
-  Vector3 feature_normal(int t, TriangleFeature feature) const noexcept;
-  bool is_outside(int t, TriangleFeature feature, const Vector3& offset) const noexcept;
+  inline detail::TrianglePoint closest_on(int t, const Vector3& p) const noexcept;
+  inline Vector3 point_on(int t, const detail::TrianglePoint& on) const noexcept;
+  Vector3 feature_normal(int t, detail::TriangleFeature feature) const noexcept;
+  bool is_outside(int t, detail::TriangleFeature feature, const Vector3& offset) const noexcept;
   void list_triangles();
   void list_neighbours();
   bool is_one_fan(int v) const;
@@ -201,7 +201,7 @@ class ContactSurface {
 
   std::vector<Vector3> positions_;
   std::vector<Triangle> triangles_;
-  Bvh bvh_;
+  detail::Bvh bvh_;
   std::vector<Vector3> normals_, vertex_normals_;
   enum class VertexKind : std::uint8_t { regular, rim, crowded };  // crowded: not one fan of triangles
   std::vector<VertexKind> vertex_kind_;
@@ -216,7 +216,7 @@ class ContactSurface {
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const SubfacetCompliance> subfacet_;
   std::shared_ptr<const ForceAccuracy> accuracy_;
-  LinearModelError model_error_;
+  detail::LinearModelError model_error_;
   std::vector<KnownErrors> bodies_;            // of joined surfaces; empty for one of its own
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
@@ -230,6 +230,8 @@ struct CoarseFacetReport {
   std::vector<int> triangles;  ///< numbers of the triangles that are too long, ascending
   int unknown_materials = 0;   ///< how many of them have no known material
 };
+
+namespace detail {
 
 /// Checks every triangle once. Allocates; for set-up.
 inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius) {
@@ -245,6 +247,8 @@ inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, dou
   }
   return report;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -196,46 +196,48 @@ PALPATE_INLINE double ContactSurface::facet_length(int t) const noexcept {
   return std::sqrt(std::sqrt(double_area_squared(t)));
 }
 
-inline TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {
+inline detail::TrianglePoint ContactSurface::closest_on(int t, const Vector3& p) const noexcept {
   const Triangle& v = triangle(t);
-  return closest_point(p, position(v[0]), position(v[1]), position(v[2]));
+  return detail::closest_point(p, position(v[0]), position(v[1]), position(v[2]));
 }
 
-inline Vector3 ContactSurface::point_on(int t, const TrianglePoint& on) const noexcept {
+inline Vector3 ContactSurface::point_on(int t, const detail::TrianglePoint& on) const noexcept {
   const Triangle& v = triangle(t);
   return on.weights[0] * position(v[0]) + on.weights[1] * position(v[1]) + on.weights[2] * position(v[2]);
 }
 
-PALPATE_INLINE Vector3 ContactSurface::feature_normal(int t, TriangleFeature feature) const noexcept {
+PALPATE_INLINE Vector3 ContactSurface::feature_normal(int t, detail::TriangleFeature feature) const noexcept {
   const auto index = static_cast<std::size_t>(feature);
   const Vector3& own = normals_[static_cast<std::size_t>(t)];
-  if (feature == TriangleFeature::face) return own;
-  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0))
+  if (feature == detail::TriangleFeature::face) return own;
+  if (index >= static_cast<std::size_t>(detail::TriangleFeature::vertex0))
     return vertex_normals_[static_cast<std::size_t>(
-        triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)])];
-  const int other = neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(TriangleFeature::edge01)];
+        triangle(t)[index - static_cast<std::size_t>(detail::TriangleFeature::vertex0)])];
+  const int other =
+      neighbour_[static_cast<std::size_t>(t)][index - static_cast<std::size_t>(detail::TriangleFeature::edge01)];
   return other < 0 ? own : (own + normals_[static_cast<std::size_t>(other)]).normalized();
 }
 
-PALPATE_INLINE bool ContactSurface::is_rim(int t, TriangleFeature feature) const noexcept {
+PALPATE_INLINE bool ContactSurface::is_rim(int t, detail::TriangleFeature feature) const noexcept {
   const auto index = static_cast<std::size_t>(feature);
-  constexpr auto edges = static_cast<std::size_t>(TriangleFeature::edge01),
-                 vertices = static_cast<std::size_t>(TriangleFeature::vertex0);
-  if (feature == TriangleFeature::face) return false;
+  constexpr auto edges = static_cast<std::size_t>(detail::TriangleFeature::edge01),
+                 vertices = static_cast<std::size_t>(detail::TriangleFeature::vertex0);
+  if (feature == detail::TriangleFeature::face) return false;
   if (index < vertices) return neighbour_[static_cast<std::size_t>(t)][index - edges] == no_neighbour;
   return vertex_kind_[static_cast<std::size_t>(triangle(t)[index - vertices])] == VertexKind::rim;
 }
 
 /// Whether a point at `offset` from its closest point, on this feature, is outside.
-PALPATE_INLINE bool ContactSurface::is_outside(int t, TriangleFeature feature, const Vector3& offset) const noexcept {
+PALPATE_INLINE bool ContactSurface::is_outside(int t, detail::TriangleFeature feature,
+                                               const Vector3& offset) const noexcept {
   const auto index = static_cast<std::size_t>(feature);
-  if (index >= static_cast<std::size_t>(TriangleFeature::vertex0)) {
-    const int v = triangle(t)[index - static_cast<std::size_t>(TriangleFeature::vertex0)];
+  if (index >= static_cast<std::size_t>(detail::TriangleFeature::vertex0)) {
+    const int v = triangle(t)[index - static_cast<std::size_t>(detail::TriangleFeature::vertex0)];
     if (is_rim(t, feature)) return true;
     if (vertex_kind_[static_cast<std::size_t>(v)] == VertexKind::crowded)
       return detail::outside_at_vertex(*this, v, offset);
-  } else if (feature != TriangleFeature::face) {
-    const std::size_t edge = index - static_cast<std::size_t>(TriangleFeature::edge01);
+  } else if (feature != detail::TriangleFeature::face) {
+    const std::size_t edge = index - static_cast<std::size_t>(detail::TriangleFeature::edge01);
     const int other = neighbour_[static_cast<std::size_t>(t)][edge];
     if (other == no_neighbour) return true;
     if (other == several_neighbours)
@@ -248,7 +250,7 @@ PALPATE_INLINE ContactSurface::Closest ContactSurface::closest(const Vector3& p)
   Closest result;
   result.triangle = bvh_.nearest(p, [&](int t) { return (p - point_on(t, closest_on(t, p))).squaredNorm(); });
   if (result.triangle < 0) return result;
-  const TrianglePoint on = closest_on(result.triangle, p);
+  const detail::TrianglePoint on = closest_on(result.triangle, p);
   result.point = point_on(result.triangle, on);
   const Vector3 offset = p - result.point;
   const double length = offset.norm();

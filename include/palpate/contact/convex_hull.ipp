@@ -16,6 +16,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Vertices and faces of a convex hull. Coplanar triangles are one polygon.
 struct HullPolygons {
   int dimension = 0;  ///< 0: a point, 1: a segment, 2: a plane polygon, 3: a polyhedron
@@ -34,8 +36,6 @@ inline constexpr double hull_flatness = 1e-6;
 /// threshold), points that are not finite (ids: the points), and points whose hull is not closed because it has
 /// features smaller than a millionth of it. Allocates; for set-up.
 HullPolygons hull_polygons(std::span<const Vector3> points);
-
-namespace detail {
 
 /// The points of a hull under construction.
 struct HullPoints {
@@ -170,10 +170,8 @@ inline void keep_corners(const HullPoints& points, HullPolygons& hull) {
     }
 }
 
-}  // namespace detail
-
 PALPATE_INLINE HullPolygons hull_polygons(std::span<const Vector3> all) {
-  const detail::HullPoints points = detail::distinct_points(all);
+  const HullPoints points = distinct_points(all);
   HullPolygons hull;
   const Vector3 a = points.at(points.farthest([&](const Vector3& p) { return (p - points.at(0)).norm(); }));
   const Vector3 b = points.at(points.farthest([&](const Vector3& p) { return (p - a).norm(); }));
@@ -192,20 +190,22 @@ PALPATE_INLINE HullPolygons hull_polygons(std::span<const Vector3> all) {
   const auto above = [&](const Vector3& p) { return std::abs(normal.dot(p - a)); };
   if (above(points.at(points.farthest(above))) > hull_flatness * length) {
     hull.dimension = 3;
-    hull.faces = detail::find_faces(points);
+    hull.faces = find_faces(points);
   } else {
     std::vector<int> on;
     for (int i = 0; i < points.count(); ++i) on.push_back(i);
-    hull.faces = {detail::plane_hull(points, on, normal)};
+    hull.faces = {plane_hull(points, on, normal)};
     hull.faces.emplace_back(hull.faces[0].rbegin(), hull.faces[0].rend());
   }
-  detail::keep_corners(points, hull);
-  detail::require_closed(hull);
+  keep_corners(points, hull);
+  require_closed(hull);
   return hull;
 }
 
+}  // namespace detail
+
 PALPATE_INLINE ConvexHull::ConvexHull(std::span<const Vector3> points) {
-  HullPolygons hull = hull_polygons(points);
+  detail::HullPolygons hull = detail::hull_polygons(points);
   dimension_ = hull.dimension;
   vertices_ = std::move(hull.vertices);
   for (const std::vector<int>& face : hull.faces) add_face(face);

@@ -22,6 +22,8 @@ PALPATE_INLINE CoulombFriction::CoulombFriction(double coefficient, int capacity
       drift_(capacity_),
       slip_(capacity_) {}
 
+namespace detail {
+
 /// A unit vector perpendicular to a unit vector.
 inline Vector3 unit_across(const Vector3& n) noexcept {
   const double xy = std::sqrt(n[0] * n[0] + n[1] * n[1]);
@@ -29,9 +31,11 @@ inline Vector3 unit_across(const Vector3& n) noexcept {
   return {1.0, 0.0, 0.0};
 }
 
+}  // namespace detail
+
 PALPATE_INLINE void CoulombFriction::set(int i, const Vector3& normal, const Vector3& drift,
                                          const Vector3& friction_force, bool sticks) noexcept {
-  const Vector3 a = unit_across(normal), b = cross(normal, a);
+  const Vector3 a = detail::unit_across(normal), b = cross(normal, a);
   const Frame& f = frame_[at(i)] = {{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}, sticks};
   drift_[at(i)] = f.along(drift);
   force_[at(i)] = f.along(friction_force);

@@ -14,6 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// What a sphere misses at one place of a mesh that is too coarse for it: the difference in depth, at equal force,
 /// between the facets and a fine mesh. Measured with the sphere over a vertex, the middle of an edge and the middle of
 /// a facet: the error differs between them.
@@ -33,6 +35,8 @@ struct MissingDepth {
   Level at(std::size_t position, double force) const noexcept;
 };
 
+}  // namespace detail
+
 /// Errors of the forces on a sphere of one radius, measured at several places of a contact surface. Immutable after
 /// set-up; a tick only reads.
 ///
@@ -49,12 +53,12 @@ class ForceAccuracy {
     double softness = 1.0;      ///< modulus at the place, relative to that at the vertex
   };
 
-  ForceAccuracy(double radius, std::vector<MissingDepth> places, std::vector<Vertex> vertices)
+  ForceAccuracy(double radius, std::vector<detail::MissingDepth> places, std::vector<Vertex> vertices)
       : radius_(radius), places_(std::move(places)), vertices_(std::move(vertices)) {}
 
   /// Radius of the sphere of the measurement [m].
   double radius() const noexcept { return radius_; }
-  std::span<const MissingDepth> places() const noexcept { return places_; }
+  std::span<const detail::MissingDepth> places() const noexcept { return places_; }
 
   /// Error of the force [N] on a sphere of about that radius that presses these contacts, indentation `depth` [m]
   /// without coupling. For a sphere of a radius more than a quarter larger or smaller nothing is known. No allocation;
@@ -72,9 +76,11 @@ class ForceAccuracy {
   static Loads largest_loads(int number, std::span<const Contact> contacts) noexcept;
 
   double radius_;
-  std::vector<MissingDepth> places_;
+  std::vector<detail::MissingDepth> places_;
   std::vector<Vertex> vertices_;
 };
+
+namespace detail {
 
 /// What is known at set-up about a linear model. Errors of the compliance are absolute, of any 3 x 3 block between two
 /// vertices, as spectral norms. At equal depth d of a tool they change its force by at most that error times S^2 / d to
@@ -114,6 +120,8 @@ inline double linearity_error(const SphereIndentation& sphere, double body_size)
   const double local = indentation * (1.0 + growth * indentation) * (thick + thin / (support * support));
   return local + of_body * (depth - indentation) * sphere.radius / body_size;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -8,6 +8,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double force) const noexcept {
   const std::vector<Level>& known = levels[position];
   if (known.empty()) return {force, 0.0, infinity};
@@ -22,6 +24,8 @@ PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double
   const double beyond = force / low.force - 1.0;
   return {force, low.missing, low.doubt + beyond * (std::abs(low.missing) + low.doubt)};
 }
+
+}  // namespace detail
 
 /// Contact points on facets distribute their force to the vertices. The loads are added per vertex; beyond `capacity`
 /// vertices the contact is so large that the position over a facet does not matter, and the rest is ignored.
@@ -70,7 +74,7 @@ PALPATE_INLINE ForceAccuracy::Loads ForceAccuracy::largest_loads(int number,
 
 PALPATE_INLINE ForceError ForceAccuracy::error_without_force(int vertex) const noexcept {
   const Vertex& at = vertices_[static_cast<std::size_t>(vertex)];
-  const MissingDepth& place = places_[static_cast<std::size_t>(at.place)];
+  const detail::MissingDepth& place = places_[static_cast<std::size_t>(at.place)];
   const double unseen = *std::max_element(place.unseen.begin(), place.unseen.end()) / at.softness;
   return {0.0, unseen, 0.0, {unseen}};
 }
@@ -93,11 +97,11 @@ PALPATE_INLINE ForceError ForceAccuracy::error(const ContactTool& tool, int numb
   double missing = 0.0, doubt = 0.0;
   for (std::size_t k = 0; k < 3 && loads.vertex[k] >= 0; ++k) {
     const Vertex& vertex = vertices_[static_cast<std::size_t>(loads.vertex[k])];
-    const MissingDepth& place = places_[static_cast<std::size_t>(vertex.place)];
+    const detail::MissingDepth& place = places_[static_cast<std::size_t>(vertex.place)];
     const double scale = loads.share[k] * hidden(vertex.facet_length) / hidden(place.facet_length);
     double largest = 0.0;
-    for (std::size_t p = 0; p < MissingDepth::positions; ++p) {
-      const MissingDepth::Level level = place.at(p, at * vertex.softness);
+    for (std::size_t p = 0; p < detail::MissingDepth::positions; ++p) {
+      const detail::MissingDepth::Level level = place.at(p, at * vertex.softness);
       if (part[p] > 0.0) {
         missing += scale * part[p] * level.missing;
         doubt += loads.share[k] * part[p] * level.doubt;

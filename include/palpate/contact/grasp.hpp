@@ -10,8 +10,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 class Grasp {
  public:
   static constexpr double reach = 0.1;  ///< largest gap, in radii, of a point that can be grasped
-  static constexpr int most_points = Candidates::most_pinned / maximum_tools;  ///< of a pad, the nearest ones
-  static constexpr int most_visited = 64;                                      ///< vertices in the search for them
+  static constexpr int most_points = detail::Candidates::most_pinned / maximum_tools;  ///< of a pad, the nearest ones
+  static constexpr int most_visited = 64;  ///< vertices in the search for them
 
   bool requested = false;  ///< since the tool began to grasp
 
@@ -22,26 +22,28 @@ class Grasp {
   }
   /// Whether a pad is larger than its radius: the triangle in its middle reaches beyond it.
   bool is_coarse() const noexcept { return count_ > 0 && is_coarse_; }
-  std::span<Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
+  std::span<detail::Candidate> rows() noexcept { return {rows_.data(), 3 * static_cast<std::size_t>(count_)}; }
   /// Whether a row of its own would be stiff: of a point that is grasped, lies within the disc of a grasped point, or
   /// moves more with the vertices of a pad than with others.
-  bool holds(const ContactSurface& surface, const Candidates& candidates, const Candidate& c) const noexcept;
+  bool holds(const ContactSurface& surface, const detail::Candidates& candidates,
+             const detail::Candidate& c) const noexcept;
 
   /// Grasps this point at its present place on the tool.
-  void take(const Candidate& point, const ContactTool& tool) noexcept;
+  void take(const detail::Candidate& point, const ContactTool& tool) noexcept;
   /// Grasps the corners of the point's triangle and the vertices within `radius` [m] of the point along the surface, at
   /// most `most`, the nearest ones. They have no place on the tool before `place_pad`. No allocation; bounded work.
-  void take_pad(const ContactSurface& surface, const Candidates& candidates, const Candidate& point,
+  void take_pad(const ContactSurface& surface, const detail::Candidates& candidates, const detail::Candidate& point,
                 const ContactTool& tool, double radius, int most) noexcept;
   /// Gives the vertices of the pad their present places on the tool.
-  void place_pad(const TissueView& tissue, Candidates& candidates, SurfaceDisplacement& displacement,
+  void place_pad(const TissueView& tissue, detail::Candidates& candidates, detail::SurfaceDisplacement& displacement,
                  const ContactTool& tool) noexcept;
   void release() noexcept;
   /// Continues on another surface; points whose triangles no longer exist are released.
-  void move_to(const Candidates& candidates, const ContactSamples& before, const ContactSurface& surface) noexcept;
+  void move_to(const detail::Candidates& candidates, const detail::ContactSamples& before,
+               const ContactSurface& surface) noexcept;
 
  private:
-  std::array<Candidate, 3 * most_points> rows_{};
+  std::array<detail::Candidate, 3 * most_points> rows_{};
   std::array<int, most_points> vertices_{};  // of a pad; -1: a point within a triangle
   int count_ = 0;                            // points
   bool is_coarse_ = false;                   // of a pad

@@ -47,18 +47,18 @@ class PadSearch {
 
 }  // namespace detail
 
-PALPATE_INLINE bool Grasp::holds(const ContactSurface& surface, const Candidates& candidates,
-                                 const Candidate& c) const noexcept {
+PALPATE_INLINE bool Grasp::holds(const ContactSurface& surface, const detail::Candidates& candidates,
+                                 const detail::Candidate& c) const noexcept {
   if (count_ == 0) return false;
-  const ContactSample& sample = candidates.sample_of(c);
+  const detail::ContactSample& sample = candidates.sample_of(c);
   const auto grasped = [&](int vertex) {
     return std::find(vertices_.begin(), vertices_.begin() + count_, vertex) != vertices_.begin() + count_;
   };
   if (vertices_[0] < 0) {
     if (c.sample == rows_[0].sample) return true;
     if (!candidates.half_space_point(rows_[0].sample).is_known()) return false;
-    const Vector3 middle = Candidates::rest(surface, candidates.sample_of(rows_[0]));
-    return (Candidates::rest(surface, sample) - middle).squaredNorm() < rows_[0].area * std::numbers::inv_pi;
+    const Vector3 middle = detail::Candidates::rest(surface, candidates.sample_of(rows_[0]));
+    return (detail::Candidates::rest(surface, sample) - middle).squaredNorm() < rows_[0].area * std::numbers::inv_pi;
   }
   double moved = 0.0;
   for (std::size_t a = 0; a < 3; ++a)
@@ -66,10 +66,10 @@ PALPATE_INLINE bool Grasp::holds(const ContactSurface& surface, const Candidates
   return moved > 0.5;
 }
 
-PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool) noexcept {
+PALPATE_INLINE void Grasp::take(const detail::Candidate& point, const ContactTool& tool) noexcept {
   vertices_[static_cast<std::size_t>(count_)] = -1;
   for (int k = 0; k < 3; ++k) {
-    Candidate& c = rows_[static_cast<std::size_t>(3 * count_ + k)] = point;
+    detail::Candidate& c = rows_[static_cast<std::size_t>(3 * count_ + k)] = point;
     c.lift();
     c.grasped = true;
     c.normal = Vector3(k == 0, k == 1, k == 2);
@@ -78,16 +78,17 @@ PALPATE_INLINE void Grasp::take(const Candidate& point, const ContactTool& tool)
   ++count_;
 }
 
-PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candidates& candidates, const Candidate& point,
-                                    const ContactTool& tool, double radius, int most) noexcept {
-  const ContactSample& middle = candidates.sample_of(point);
-  const Vector3 rest = Candidates::rest(surface, middle);
+PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const detail::Candidates& candidates,
+                                    const detail::Candidate& point, const ContactTool& tool, double radius,
+                                    int most) noexcept {
+  const detail::ContactSample& middle = candidates.sample_of(point);
+  const Vector3 rest = detail::Candidates::rest(surface, middle);
   is_coarse_ = false;
   for (const int v : middle.vertices) is_coarse_ = is_coarse_ || (surface.position(v) - rest).norm() > radius;
   const detail::PadSearch near(surface, middle.vertices, rest, radius);
   const int points = std::min({near.count(), most, most_points});
   for (int i = 0; i < points; ++i) {
-    Candidate c = point;
+    detail::Candidate c = point;
     c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
     if (c.sample < 0) continue;
     c.triangle = surface.triangles_at(near.vertex(i)).front();
@@ -99,9 +100,9 @@ PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const Candida
   }
 }
 
-PALPATE_INLINE void Grasp::place_pad(const TissueView& tissue, Candidates& candidates,
-                                     SurfaceDisplacement& displacement, const ContactTool& tool) noexcept {
-  for (Candidate& c : rows()) {
+PALPATE_INLINE void Grasp::place_pad(const TissueView& tissue, detail::Candidates& candidates,
+                                     detail::SurfaceDisplacement& displacement, const ContactTool& tool) noexcept {
+  for (detail::Candidate& c : rows()) {
     const Vector3 axis = c.normal;
     candidates.evaluate(tissue, tool, displacement, c);
     c.normal = axis;
@@ -114,13 +115,13 @@ PALPATE_INLINE void Grasp::release() noexcept {
   count_ = 0;
 }
 
-PALPATE_INLINE void Grasp::move_to(const Candidates& candidates, const ContactSamples& before,
+PALPATE_INLINE void Grasp::move_to(const detail::Candidates& candidates, const detail::ContactSamples& before,
                                    const ContactSurface& surface) noexcept {
   int kept = 0;
   for (int i = 0; i < count_; ++i) {
     bool exists = true;
     for (int k = 0; k < 3; ++k) {
-      Candidate& c = rows_[static_cast<std::size_t>(3 * kept + k)] = rows_[static_cast<std::size_t>(3 * i + k)];
+      detail::Candidate& c = rows_[static_cast<std::size_t>(3 * kept + k)] = rows_[static_cast<std::size_t>(3 * i + k)];
       exists = candidates.move(c, before, surface) && exists;
     }
     vertices_[static_cast<std::size_t>(kept)] = vertices_[static_cast<std::size_t>(i)];

@@ -8,7 +8,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 struct ContactSample;  // contact_samples.hpp, whose definitions need the class below
+
+}  // namespace detail
 
 /// What has to be added to the compliance of the mesh so that the points of a contact have the dent of an elastic body,
 /// not that of the facets (subtraction of the singularity):
@@ -30,12 +34,12 @@ class SubfacetCompliance {
   /// `vertices`: of the contact surface; one with `root` 0 is not known, and points that depend on it have the
   /// compliance of the mesh only. `first`: per vertex j the number of its first block, one past the end last; `blocks`:
   /// displacement of other vertices, and of j itself, per force on j.
-  SubfacetCompliance(std::vector<HalfSpacePoint> vertices, std::vector<int> first, std::vector<Block> blocks)
+  SubfacetCompliance(std::vector<detail::HalfSpacePoint> vertices, std::vector<int> first, std::vector<Block> blocks)
       : vertices_(std::move(vertices)), first_(std::move(first)), blocks_(std::move(blocks)) {
     index_blocks();
   }
 
-  explicit SubfacetCompliance(const ProjectedHalfSpace& table);
+  explicit SubfacetCompliance(const detail::ProjectedHalfSpace& table);
   /// Of a surface that joins those of several bodies, whose vertices follow each other; null: nothing is known.
   struct Body {
     const SubfacetCompliance* own;
@@ -52,7 +56,7 @@ class SubfacetCompliance {
   SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices);
 
   int vertex_count() const noexcept { return static_cast<int>(vertices_.size()); }
-  const HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }
+  const detail::HalfSpacePoint& vertex(int v) const noexcept { return vertices_[at(v)]; }
   bool is_known(int v) const noexcept { return vertices_[at(v)].is_known(); }
   bool has_place(int v) const noexcept { return vertices_[at(v)].length > 0.0; }
   std::span<const Block> blocks(int v) const noexcept {
@@ -63,22 +67,22 @@ class SubfacetCompliance {
     return {block_vertex_.data() + first_[at(v)], static_cast<std::size_t>(first_[at(v) + 1] - first_[at(v)])};
   }
   std::size_t bytes() const noexcept {
-    return vertices_.size() * sizeof(HalfSpacePoint) + first_.size() * sizeof(int) +
+    return vertices_.size() * sizeof(detail::HalfSpacePoint) + first_.size() * sizeof(int) +
            blocks_.size() * (sizeof(Block) + sizeof(int));
   }
 
   /// A point of the surface with this normal; not known unless all of its vertices are known or fixed. Beside fixed
   /// vertices it has the half-space of the others: they do not affect a dent that is small for the facet. Within
   /// the last quarter of the facet the half-space gets stiffer, and between fixed vertices there is none.
-  HalfSpacePoint point(const ContactSample& sample, const Vector3& normal) const noexcept;
+  detail::HalfSpacePoint point(const detail::ContactSample& sample, const Vector3& normal) const noexcept;
   /// Whether `point` is known.
-  bool knows(const ContactSample& sample) const noexcept;
+  bool knows(const detail::ContactSample& sample) const noexcept;
   /// chi G of two different points; zero where one is not known [m/N].
-  static Matrix3 half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept;
+  static Matrix3 half_space(const detail::HalfSpacePoint& p, const detail::HalfSpacePoint& q) noexcept;
   /// Whether different vertices may be at the same place.
   bool has_copies() const noexcept { return has_copies_; }
   /// N_p^T chi G_h N_q [m/N]. Searches the blocks of up to three vertices.
-  Matrix3 shown(const ContactSample& p, const ContactSample& q) const noexcept;
+  Matrix3 shown(const detail::ContactSample& p, const detail::ContactSample& q) const noexcept;
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -87,7 +91,7 @@ class SubfacetCompliance {
   /// The block for the displacement of vertex i per force on vertex j; null where none is stored. A binary search.
   const Block* find(int i, int j) const noexcept;
 
-  std::vector<HalfSpacePoint> vertices_;
+  std::vector<detail::HalfSpacePoint> vertices_;
   std::vector<int> first_;
   std::vector<Block> blocks_;
   std::vector<int> block_vertex_;  // of each block, without the matrices

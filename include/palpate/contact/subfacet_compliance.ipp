@@ -8,7 +8,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const ProjectedHalfSpace& table) {
+PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const detail::ProjectedHalfSpace& table) {
   std::vector<std::vector<Block>> of(at(table.vertex_count()));
   for (int i = 0; i < table.vertex_count(); ++i) {
     vertices_.push_back(table.vertex(i));
@@ -33,7 +33,8 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodi
     const int before = vertex_count();
     int last = number;  // a body may be a group itself
     for (int v = 0; v < body.vertices; ++v) {
-      HalfSpacePoint& p = vertices_.emplace_back(body.own != nullptr ? body.own->vertex(v) : HalfSpacePoint{});
+      detail::HalfSpacePoint& p =
+          vertices_.emplace_back(body.own != nullptr ? body.own->vertex(v) : detail::HalfSpacePoint{});
       p.body += number;
       last = std::max(last, p.body);
       for (const Block& block : body.own != nullptr ? body.own->blocks(v) : std::span<const Block>{})
@@ -52,7 +53,8 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& 
     if (const int origin = vertices[v].origin; origin >= 0) copies[at(origin)].push_back(static_cast<int>(v));
   first_.assign(1, 0);
   for (const Copy& copy : vertices) {
-    HalfSpacePoint& p = vertices_.emplace_back(copy.origin >= 0 ? whole.vertex(copy.origin) : HalfSpacePoint{});
+    detail::HalfSpacePoint& p =
+        vertices_.emplace_back(copy.origin >= 0 ? whole.vertex(copy.origin) : detail::HalfSpacePoint{});
     p.is_disturbed = p.is_disturbed || copy.is_changed;
     for (const Block& block : copy.origin >= 0 ? whole.blocks(copy.origin) : std::span<const Block>{})
       for (const int other : copies[at(block.vertex)]) blocks_.push_back({other, block.shown});
@@ -83,27 +85,27 @@ PALPATE_INLINE const SubfacetCompliance::Block* SubfacetCompliance::find(int i, 
                                                 : nullptr;
 }
 
-PALPATE_INLINE bool SubfacetCompliance::knows(const ContactSample& sample) const noexcept {
+PALPATE_INLINE bool SubfacetCompliance::knows(const detail::ContactSample& sample) const noexcept {
   bool any = false;
   for (std::size_t a = 0; a < 3; ++a) {
     if (sample.weights[a] == 0.0) continue;
-    const HalfSpacePoint& own = vertex(sample.vertices[a]);
+    const detail::HalfSpacePoint& own = vertex(sample.vertices[a]);
     if (!own.is_known() && !own.is_fixed) return false;
     any = any || own.is_known();
   }
   return any;
 }
 
-PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sample,
-                                                        const Vector3& normal) const noexcept {
+PALPATE_INLINE detail::HalfSpacePoint SubfacetCompliance::point(const detail::ContactSample& sample,
+                                                                const Vector3& normal) const noexcept {
   constexpr double beside = 0.25;  // of a facet
-  HalfSpacePoint p;
+  detail::HalfSpacePoint p;
   p.normal = normal;
   double free = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const double weight = sample.weights[a];
     if (weight == 0.0) continue;
-    const HalfSpacePoint& own = vertex(sample.vertices[a]);
+    const detail::HalfSpacePoint& own = vertex(sample.vertices[a]);
     if (!own.is_known() && !own.is_fixed) return {.bending_error = own.bending_error, .is_disturbed = own.is_disturbed};
     if (!own.is_fixed) free += weight;
     p.body = own.body;
@@ -121,11 +123,13 @@ PALPATE_INLINE HalfSpacePoint SubfacetCompliance::point(const ContactSample& sam
   return p;
 }
 
-PALPATE_INLINE Matrix3 SubfacetCompliance::half_space(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
-  return p.is_known() && q.is_known() && p.body == q.body ? supported_compliance(p, q) : Matrix3::Zero();
+PALPATE_INLINE Matrix3 SubfacetCompliance::half_space(const detail::HalfSpacePoint& p,
+                                                      const detail::HalfSpacePoint& q) noexcept {
+  return p.is_known() && q.is_known() && p.body == q.body ? detail::supported_compliance(p, q) : Matrix3::Zero();
 }
 
-PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const ContactSample& p, const ContactSample& q) const noexcept {
+PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const detail::ContactSample& p,
+                                                 const detail::ContactSample& q) const noexcept {
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t b = 0; b < 3; ++b) {
     if (q.weights[b] == 0.0) continue;

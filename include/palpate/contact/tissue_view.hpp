@@ -174,7 +174,7 @@ class TissueView {
     return block;
   }
   /// J_p C J_q^T: displacement of a point per force on another [m/N].
-  void between(const ContactSample& p, const ContactSample& q, Matrix3& block) const noexcept {
+  void between(const detail::ContactSample& p, const detail::ContactSample& q, Matrix3& block) const noexcept {
     functions_->between(tissue_, p, q, block.data());
   }
   /// Displacement of a vertex under forces on vertices [m].
@@ -220,10 +220,12 @@ class TissueView {
     return r;
   }
   /// The mean of those of a point's vertices.
-  Matrix3 half_space_map_at(const ContactSample& point) const noexcept;
+  Matrix3 half_space_map_at(const detail::ContactSample& point) const noexcept;
 
   /// Null for a tissue that several servos may use.
-  TissueClaim* claim() const noexcept { return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr; }
+  detail::TissueClaim* claim() const noexcept {
+    return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr;
+  }
   /// What the set-up of the tissue reports, one sentence each. Allocates.
   std::vector<std::string> notes() const {
     return functions_->notes != nullptr ? functions_->notes(tissue_) : std::vector<std::string>{};
@@ -254,7 +256,7 @@ class TissueView {
   const ContactSurface* surface_;
 };
 
-inline Matrix3 TissueView::half_space_map_at(const ContactSample& point) const noexcept {
+inline Matrix3 TissueView::half_space_map_at(const detail::ContactSample& point) const noexcept {
   const Matrix3 first = half_space_map(point.vertices[0]);
   Matrix3 mean = first;  // exact where all are equal
   for (std::size_t a = 1; a < 3; ++a)

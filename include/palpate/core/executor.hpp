@@ -25,6 +25,8 @@ concept Executor = requires(E& executor, int count, const ExecutorTask& task) {
   executor.run(count, task);
 };
 
+namespace detail {
+
 /// Starts threads for every `run` and joins them at its end, so that no thread is left after the set-up. When the
 /// system refuses a thread, the others do its task.
 class StartedThreads {
@@ -38,12 +40,14 @@ class StartedThreads {
   int threads_;
 };
 
+}  // namespace detail
+
 /// The threads of a set-up: a number of started ones, or those of an executor, which must outlive it. Results are the
 /// same, to the last bit, for any of them.
 class SetupThreads {
  public:
   /// Starts `count` - 1 threads while there is work for them; 0: as many as the machine has.
-  SetupThreads(int count = 0) noexcept : count_(StartedThreads(count).threads()) {}
+  SetupThreads(int count = 0) noexcept : count_(detail::StartedThreads(count).threads()) {}
   template <Executor E>
   requires(!std::same_as<E, SetupThreads>) SetupThreads(E& executor)
       : count_(executor.threads()),
@@ -61,7 +65,7 @@ class SetupThreads {
   void (*run_)(void*, int, const ExecutorTask&) = nullptr;
 };
 
-static_assert(Executor<StartedThreads>);
+static_assert(Executor<detail::StartedThreads>);
 static_assert(Executor<SetupThreads>);
 static_assert(!Executor<int>);
 

@@ -15,6 +15,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE StartedThreads::StartedThreads(int threads) noexcept
     : threads_(threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
 
@@ -25,13 +27,15 @@ PALPATE_INLINE void StartedThreads::run(int count, const ExecutorTask& task) con
   };
   std::vector<std::thread> started;
   started.reserve(static_cast<std::size_t>(std::max(0, count - 1)));
-  detail::attempt([&] {  // no more threads, or no memory for one: the others do the work
+  attempt([&] {  // no more threads, or no memory for one: the others do the work
     for (int i = 1; i < count; ++i) started.emplace_back(work);
   });
   if (count > 0) task(0);
   work();
   for (std::thread& thread : started) thread.join();
 }
+
+}  // namespace detail
 
 PALPATE_INLINE void SetupThreads::run(int count, const ExecutorTask& task) const {
   const std::uint64_t mode = platform::float_mode();
@@ -55,7 +59,7 @@ PALPATE_INLINE void SetupThreads::run(int count, const ExecutorTask& task) const
   if (executor_ != nullptr)
     run_(executor_, count, guarded);
   else
-    StartedThreads(count_).run(count, guarded);
+    detail::StartedThreads(count_).run(count, guarded);
 #if defined(PALPATE_HAS_EXCEPTIONS)
   if (first) std::rethrow_exception(first);
 #endif

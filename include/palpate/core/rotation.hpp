@@ -213,7 +213,7 @@ PALPATE_ALWAYS_INLINE Quaternion<S> refined(const Quaternion<S>& q, const Tensor
 /// followed by one step of Newton's method; near a multiple eigenvalue Jacobi's method.
 template <class S>
 PALPATE_ALWAYS_INLINE Quaternion<S> closest_quaternion(const Tensor3<S>& f) noexcept {
-  using Scalar = scalar_of<S>;
+  using Scalar = detail::scalar_of<S>;
   using std::abs;
   using std::max;
   S largest = S(std::numeric_limits<Scalar>::min() * 4);
@@ -224,7 +224,7 @@ PALPATE_ALWAYS_INLINE Quaternion<S> closest_quaternion(const Tensor3<S>& f) noex
   auto q = detail::adjugate_column(detail::Davenport<S>(scaled), t, diagonal);
   const auto apart = (S(-1) * diagonal >= S(detail::eigenvalues_apart<S>) * t * t * t) & (t > S(0));  // false for NaN
   q = detail::refined(detail::normalized(q), scaled);
-  if (!all(apart)) detail::jacobi_lanes(scaled, !apart, q);
+  if (!detail::all(apart)) detail::jacobi_lanes(scaled, !apart, q);
   return q;
 }
 /// The same as a tensor.
@@ -259,7 +259,7 @@ inline constexpr S last_turn = sizeof(S) == 8 ? S(1e-15) : S(2.5e-7);
 /// steps, closest_quaternion computes the rotation from scratch.
 template <class S>
 PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternion<S>& q) noexcept {
-  using Scalar = scalar_of<S>;
+  using Scalar = detail::scalar_of<S>;
   for (int k = 0; k < 4; ++k) {
     const Tensor3<S> a = transpose_product(detail::rotation_of(q), f), g = detail::rotational_stiffness(a),
                      c = cofactor(g);
@@ -269,9 +269,9 @@ PALPATE_ALWAYS_INLINE Tensor3<S> tracked_rotation(const Tensor3<S>& f, Quaternio
     // positive definite with a safety margin; false for NaN
     const auto sure =
         (size > S(0)) & (trace(c) > S(0)) & (j > S(Scalar(1e-3)) * size * size * size) & (turn < S(0.25f));
-    if (!all(sure)) break;
+    if (!detail::all(sure)) break;
     q = detail::rotated_by(q, x, y, z);
-    if (all(turn < S(detail::last_turn<Scalar>))) return detail::rotation_of(q);
+    if (detail::all(turn < S(detail::last_turn<Scalar>))) return detail::rotation_of(q);
   }
   q = closest_quaternion(f);
   return detail::rotation_of(q);

@@ -157,9 +157,13 @@ OriginalIds translated(OriginalIds part);
 
 [[noreturn]] PALPATE_COLD void raise(SetupErrorKind kind, std::string what, std::string hint = {});
 
+namespace detail {
+
 /// Refuses because of one node or element; the message text does not contain its id.
 [[noreturn]] PALPATE_COLD void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what,
                                         std::string hint = {});
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -102,6 +102,8 @@ PALPATE_INLINE void raise(SetupErrorKind kind, std::string what, std::string hin
   raise(std::move(p));
 }
 
+namespace detail {
+
 PALPATE_INLINE void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, std::string what, std::string hint) {
   SetupProblem p;
   p.kind = kind;
@@ -110,5 +112,7 @@ PALPATE_INLINE void raise_at(SetupIds of, std::int64_t id, SetupErrorKind kind, 
   p.set_ids({&id, 1}, of);
   raise(std::move(p));
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

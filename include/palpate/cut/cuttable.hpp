@@ -116,7 +116,7 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
         const FaceKind kind = kinds_[static_cast<std::size_t>(e)][local];
         if (topology.neighbour(e, local) >= 0 || kind == FaceKind::hidden) continue;
         const auto face = topology.face_nodes({e, static_cast<int>(local)});
-        with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
+        detail::with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {
           for (const auto& t : F::triangles) {
             const auto at = [&](std::size_t k) {
               return point_of(face[static_cast<std::size_t>(t[k])], kind == FaceKind::exposed);
@@ -146,15 +146,19 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   bool known_ = false;
 };
 
+namespace detail {
+
 /// Whether tissue of a solver can be cut.
 template <class Solver>
 inline constexpr bool has_cuts = std::same_as<Solver, Condensed<SelectiveInverse>>;
+
+}  // namespace detail
 
 /// The solver `Inner` for tissue that is cut: Condensed<SelectiveInverse>, whose compliance follows cuts exactly, or
 /// Implicit<QuasiNewton<>> (cut/cuttable_moving.hpp).
 template <class Inner>
 struct Cuttable {
-  static_assert(has_cuts<Inner>,
+  static_assert(detail::has_cuts<Inner>,
                 "palpate: tissue that is cut is Cuttable<Condensed<SelectiveInverse>>, or with "
                 "palpate/cut/cuttable_moving.hpp Cuttable<Implicit<QuasiNewton<>>>");
 };
@@ -163,7 +167,7 @@ struct Cuttable {
 template <class E, class M, class Inner>
 class HapticFEModel<E, M, Cuttable<Inner>> : public CuttableTissue<E> {
   static_assert(sizeof(Cuttable<Inner>) > 0);  // instantiates Cuttable first, so that its error about Inner comes first
-  static_assert(!HasSmoothedStrain<E>,
+  static_assert(!detail::HasSmoothedStrain<E>,
                 "palpate: a cut changes the averages of smoothed elements far from it: choose Tet4 or Tet10");
   static_assert(LinearMaterial<M>, "palpate: tissue that is cut needs a LinearMaterial, for example LinearElastic");
 

@@ -7,8 +7,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 template <class S>
 inline constexpr bool has_cuts<Implicit<QuasiNewton<S>>> = true;
+
+}  // namespace detail
 
 /// Moving tissue at large strain that can be cut; see CuttableMovingTissue.
 template <class E, class M, class S>
@@ -37,13 +41,14 @@ class HapticFEModel<E, M, Cuttable<Implicit<QuasiNewton<S>>>> : public CuttableM
     if (parameters.large_strain_within < infinity || parameters.renew_factor)
       raise(SetupErrorKind::unsupported, "large_strain_within or renew_factor for tissue that is cut",
             "Leave both at their defaults");
-    AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, options.admission, this->limits(), this->setup_report());
+    detail::AdmittedMesh<E> admitted =
+        detail::admit_mesh<E>(mesh, scene, options.admission, this->limits(), this->setup_report());
     const ScopedIdTranslation translation(admitted.ids);
     HyperelasticBody<E, M> body = make_hyperelastic_body(std::move(admitted.mesh), materials);
-    auto rest = std::make_unique<ElementBody<E>>(body.rest, admitted.origin);
+    auto rest = std::make_unique<detail::ElementBody<E>>(body.rest, admitted.origin);
     rest->report_locking(this->setup_report());
     const std::vector<BoundaryFace> boundary = rest->boundary();
-    const Touchable touchable =
+    const detail::Touchable touchable =
         this->admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
     const ScopedIdTranslation own(this->original_ids());  // those of `admitted` are moved from
     if (parameters.settle || !parameters.inertia)

@@ -51,7 +51,7 @@ class CuttableMovingTissue : public MovingTissue {
 
   /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
   void cut(CutOrder order) {
-    require_ids<E>(order, elements_);
+    detail::require_ids<E>(order, elements_);
     orders_.add(std::move(order));
   }
   /// Orders a cut along the sheet swept by a blade, in the world's frame, through the deformed body.
@@ -74,7 +74,7 @@ class CuttableMovingTissue : public MovingTissue {
   /// cuts have created. Not during a tick.
   void reset() {
     const std::scoped_lock lock(changes());
-    if (const CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
+    if (const detail::CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     body_ = whole_;
     edges_.clear();
     similar_.resize(known_);
@@ -93,7 +93,7 @@ class CuttableMovingTissue : public MovingTissue {
   VectorX displacement(std::span<const VertexForce> forces = {}) {
     {
       const std::scoped_lock lock(this->changes());
-      require_vertex_forces(forces, static_cast<int>(similar_.size()));
+      detail::require_vertex_forces(forces, static_cast<int>(similar_.size()));
     }
     VectorX u;
     this->displacement_with(forces, u);
@@ -134,19 +134,19 @@ class CuttableMovingTissue : public MovingTissue {
   /// The set-up after admission. Throws as MovingTissue, and unsupported for a mesh whose parts touch only at nodes or
   /// edges.
   template <HyperelasticMaterial M, class S>
-  void set_up_cuts(HyperelasticBody<E, M> body, const std::vector<BoundaryFace>& boundary, const Touchable& touchable,
-                   const QuasiNewtonParameters& parameters) {
+  void set_up_cuts(HyperelasticBody<E, M> body, const std::vector<BoundaryFace>& boundary,
+                   const detail::Touchable& touchable, const QuasiNewtonParameters& parameters) {
     const Mesh<E>& mesh = body.rest.mesh;
-    CutTopology<E> topology(mesh, resolve_essential(mesh, boundary, scene()).constrained);
+    CutTopology<E> topology(mesh, detail::resolve_essential(mesh, boundary, scene()).constrained);
     if (topology.mesh().node_count() > mesh.node_count())
       raise(SetupErrorKind::unsupported, "a mesh whose parts touch only at nodes or edges",
             "Give each part its own nodes there");
     elements_ = mesh.element_count();
-    CutSurface<E> surface(topology, boundary, scene());
+    detail::CutSurface<E> surface(topology, boundary, scene());
     body_ = whole_ = Parts{std::move(topology), std::move(surface)};
-    const BlockPattern pattern = block_pattern(mesh);
-    auto motion = std::make_unique<CutQuasiNewtonMotion<E, M, S>>(std::move(body), body_->topology, scene(), parameters,
-                                                                  limits());
+    const detail::BlockPattern pattern = detail::block_pattern(mesh);
+    auto motion = std::make_unique<detail::CutQuasiNewtonMotion<E, M, S>>(std::move(body), body_->topology, scene(),
+                                                                          parameters, limits());
     cut_motion_ = motion.get();
     PreparedMotion prepared;
     prepared.large_strain = true;
@@ -161,7 +161,7 @@ class CuttableMovingTissue : public MovingTissue {
  private:
   struct Parts {
     CutTopology<E> topology;
-    CutSurface<E> surface;
+    detail::CutSurface<E> surface;
   };
   struct Tools {
     ToolRadii radii = 0.0;  ///< 0: no session yet
@@ -171,7 +171,7 @@ class CuttableMovingTissue : public MovingTissue {
   /// An element takes its loads with it; copies of a node carry the loads of their elements.
   VectorX applied_load(const Scene& scene) const override {
     const auto& whole = detail::element_body<E>(this->elastic_body());
-    const ElementLoads<E> loads(whole.body().mesh, whole.boundary(), scene);
+    const detail::ElementLoads<E> loads(whole.body().mesh, whole.boundary(), scene);
     const CutTopology<E>& topology = body_->topology;
     VectorX sum = VectorX::Zero(3 * topology.mesh().node_count());
     sum.head(loads.nodal_load.size()) = loads.nodal_load;
@@ -184,9 +184,9 @@ class CuttableMovingTissue : public MovingTissue {
   }
   bool prepare_step() noexcept override {
     if (halted_) return false;
-    CutOrders::Taken taken;
+    detail::CutOrders::Taken taken;
     std::optional<Parts> before;
-    RestingEdges edges;
+    detail::RestingEdges edges;
     const Index size = cut_motion_->displacement().size();
     const auto work = [&] {
       taken = orders_.take();
@@ -207,9 +207,9 @@ class CuttableMovingTissue : public MovingTissue {
     if (taken.count > 0) orders_.done(taken);
     return !halted_;
   }
-  void apply(const CutOrders::Taken& taken) {
+  void apply(const detail::CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
-    const TopologyChange<E> change = body_->topology.apply(combined(
+    const detail::TopologyChange<E> change = body_->topology.apply(detail::combined(
         taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_));
     if (change.empty()) return;
     body_->surface.update(body_->topology, change);
@@ -228,7 +228,7 @@ class CuttableMovingTissue : public MovingTissue {
     return body_->topology.mesh().position(Index{node}) + node_vector(u, Index{known});
   }
   void change_surface() {
-    const CutSurface<E>& surface = body_->surface;
+    const detail::CutSurface<E>& surface = body_->surface;
     find_similar();
     CutVertices made;
     made.nodes = surface.nodes();
@@ -237,21 +237,21 @@ class CuttableMovingTissue : public MovingTissue {
     for (const NodeId node : made.nodes) positions.push_back(position(node));
     std::vector<Triangle> triangles = surface.triangles();
     std::vector<Index> elements = surface.elements();
-    left_out_ =
-        tools_.radii.smallest > 0.0 &&
-        erase_stretched(positions, ContactSamples::maximum_subdivision * tools_.radii.smallest, triangles, elements);
+    left_out_ = tools_.radii.smallest > 0.0 &&
+                detail::erase_stretched(positions, detail::ContactSamples::maximum_subdivision * tools_.radii.smallest,
+                                        triangles, elements);
     if (left_out_) made.status.set(StatusFlag::degraded_model);
     std::vector<NodeId> origin;
     for (const NodeId node : made.nodes) origin.push_back(body_->topology.origin_of(node));
-    made.side = slit_sides(surface.triangles(), origin);
+    made.side = detail::slit_sides(surface.triangles(), origin);
     made.parent = parents();
     made.surface = ContactSurface(std::move(positions), std::move(triangles));
     made.surface.set_large_strain(true);
     made.surface.set_materials(elastic_body().contact_materials(elements));
-    made.surface.set_subfacet(half_space_after_cuts(half_space_, body_->topology, made.nodes));
+    made.surface.set_subfacet(detail::half_space_after_cuts(half_space_, body_->topology, made.nodes));
     if (tools_.radii.smallest > 0.0)
       made.contact = std::make_shared<ContactProblem>(made.surface, tools_.radii, tools_.contact);
-    const CutBody& body = cut_motion_->body();
+    const detail::CutBody& body = cut_motion_->body();
     MovingTissue::change_surface(std::move(made), body.nodal_mass, body.body.pattern, body.body.positions);
   }
   /// Per vertex the vertex of the node that its node was split from, or -1.
@@ -282,12 +282,12 @@ class CuttableMovingTissue : public MovingTissue {
 
   Index elements_ = 0;
   std::optional<Parts> body_, whole_;
-  CutMotion<E>* cut_motion_ = nullptr;
+  detail::CutMotion<E>* cut_motion_ = nullptr;
   std::size_t known_ = 0;     // vertices of the set-up
   std::vector<int> similar_;  // per vertex
   Tools tools_;
-  CutOrders orders_;
-  RestingEdges edges_;
+  detail::CutOrders orders_;
+  detail::RestingEdges edges_;
   std::shared_ptr<const SubfacetCompliance> half_space_;  // before any cut
   CutReport report_;
   std::atomic<bool> failed_{false};

@@ -42,7 +42,7 @@ class CuttableTissue : public ModelBase {
 
   /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
   void cut(CutOrder order) {
-    require_ids<E>(order, elements_);
+    detail::require_ids<E>(order, elements_);
     orders_.add(std::move(order));
   }
   /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads.
@@ -53,13 +53,13 @@ class CuttableTissue : public ModelBase {
   /// memory is short: the body is then that before the orders, which are dropped, or, when its new compliance was
   /// complete, that after them, which the next call publishes.
   bool process_cuts() {
-    const CutServed::Call call(served_);  // also while it waits for a change of the loads
+    const detail::CutServed::Call call(served_);  // also while it waits for a change of the loads
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
-    const CutOrders::Taken taken = orders_.take();
+    const detail::CutOrders::Taken taken = orders_.take();
     struct Done {
       CuttableTissue& tissue;
-      const CutOrders::Taken& taken;
+      const detail::CutOrders::Taken& taken;
       ~Done() {
         tissue.failed_.store(tissue.process_->report().failed, std::memory_order_release);
         if (taken.count > 0) tissue.orders_.done(taken);
@@ -134,7 +134,7 @@ class CuttableTissue : public ModelBase {
     const std::scoped_lock lock(changes_);
     std::string others = scene().loads_in_words();
     process_->reset(boundary(), scene());
-    if (const CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
+    if (const detail::CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     failed_.store(false, std::memory_order_release);
     loaded_ = scene();
     place(Eigen::Isometry3d::Identity());
@@ -173,7 +173,7 @@ class CuttableTissue : public ModelBase {
   /// bad_argument when a tool is too small for the mesh. Strong guarantee.
   void prepare_tools(const ToolRadii& radii, const ContactParameters& contact) {
     const std::scoped_lock lock(changes_);
-    process_->set_tools(radii, contact, loads_in_words(gravity(), other_loads()));
+    process_->set_tools(radii, contact, detail::loads_in_words(gravity(), other_loads()));
     views_.update();
     revision_ = view().contact->cut;
     renewed_ = false;
@@ -191,7 +191,7 @@ class CuttableTissue : public ModelBase {
   NoHook report_slow(bool) noexcept { return {}; }
   void report_failed(bool failed) noexcept { served_.report_failed(failed); }
   /// One servo at a time: a cut moves its contacts to the new surface.
-  TissueClaim& claim() noexcept { return claim_; }
+  detail::TissueClaim& claim() noexcept { return claim_; }
 
  protected:
   explicit CuttableTissue(const SetupOptions& options) : ModelBase(options) {
@@ -201,7 +201,7 @@ class CuttableTissue : public ModelBase {
   }
 
   /// The set-up after admission. Throws as prepare_cut and CutProcess.
-  void set_up(const Scene& scene, AdmittedBody admitted, const CutParameters& parameters) {
+  void set_up(const Scene& scene, detail::AdmittedBody admitted, const CutParameters& parameters) {
     triangles_ = admit(scene, std::move(admitted)).triangles;
     const ScopedIdTranslation translation(original_ids());
     elastic_body().report_locking(setup_report());
@@ -209,9 +209,9 @@ class CuttableTissue : public ModelBase {
     loaded_ = this->scene();
     std::optional<Selection> cuttable;
     if (parameters.cuttable) cuttable = palpate::mapped(*parameters.cuttable, node_map(), origin());
-    process_ = std::make_unique<CutProcess<E>>(
-        prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()), parameters, limits(),
-        [this](CutView&& made) {
+    process_ = std::make_unique<detail::CutProcess<E>>(
+        detail::prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()), parameters, limits(),
+        [this](detail::CutView&& made) {
           views_.back() = std::move(made);  // frees views that no tick can access any more
           views_.publish();
         },
@@ -220,8 +220,8 @@ class CuttableTissue : public ModelBase {
     setup_report().kept_dofs = process_->report().kept;
     setup_report().free_dofs = elastic_body().conditions(this->scene()).free_count();
     setup_report().condensed_dofs = setup_report().free_dofs - setup_report().kept_dofs;
-    report_displacement(elastic_body().positions(), process_->displacement_with({}).head(3 * mesh().node_count()),
-                        setup_report());
+    detail::report_displacement(elastic_body().positions(),
+                                process_->displacement_with({}).head(3 * mesh().node_count()), setup_report());
   }
 
  private:
@@ -230,21 +230,21 @@ class CuttableTissue : public ModelBase {
     Scene changed = loaded_;
     process_->set_loads(boundary(), changed.gravity(local(gravity, pose)));
   }
-  const CutView& view() const noexcept { return views_.front(); }
-  CutContact& contact() const noexcept { return *view().contact; }
+  const detail::CutView& view() const noexcept { return views_.front(); }
+  detail::CutContact& contact() const noexcept { return *view().contact; }
 
   std::vector<Triangle> triangles_;  // touchable before any cut
   Scene loaded_;                     // the last scene set; its gravity is not used
   Index elements_ = 0;
   mutable std::mutex changes_;
-  CutOrders orders_;
-  CutServed served_;
-  TissueClaim claim_;
+  detail::CutOrders orders_;
+  detail::CutServed served_;
+  detail::TissueClaim claim_;
   std::atomic<bool> failed_{false};
-  TripleBuffer<CutView> views_;
+  TripleBuffer<detail::CutView> views_;
   std::uint64_t revision_ = 0;  // the last one seen by a tick
   bool renewed_ = false;
-  std::unique_ptr<CutProcess<E>> process_;
+  std::unique_ptr<detail::CutProcess<E>> process_;
 };
 
 }}  // namespace palpate

@@ -30,7 +30,7 @@ class Chai3dDevice {
   explicit Chai3dDevice(Device& device, const Chai3dOptions& options = {})
       : device_(&device),
         options_(options),
-        rendered_(with_torque(options.limits ? *options.limits : specified(device), options.torque)) {
+        rendered_(detail::with_torque(options.limits ? *options.limits : specified(device), options.torque)) {
     if (!device.open()) refuse("open the device");
   }
   ~Chai3dDevice() {

@@ -27,7 +27,7 @@ class ForceDimensionDevice {
   /// Opens the first device that is free. Throws SetupError(unsupported) with the SDK's message when no device is free,
   /// (bad_argument) for torque without limits for it.
   explicit ForceDimensionDevice(const ForceDimensionOptions& options = {})
-      : options_(options), rendered_(with_torque(options.limits, options.torque)) {
+      : options_(options), rendered_(detail::with_torque(options.limits, options.torque)) {
     const int id = dhdOpen();
     if (id < 0) refuse("open a device");
     id_ = static_cast<char>(id);

@@ -51,7 +51,7 @@ class OpenHapticsDevice {
   explicit OpenHapticsDevice(const OpenHapticsOptions& options = {})
       : options_(options), handle_(open(options.name)), rendered_(DeviceLimits{}) {
     const auto limit = [&] {
-      rendered_ = RenderLimits(with_torque(options_.limits ? *options_.limits : sdk_limits(), options_.torque));
+      rendered_ = RenderLimits(detail::with_torque(options_.limits ? *options_.limits : sdk_limits(), options_.torque));
     };
     detail::run_or_undo(limit, [&] { hdDisableDevice(handle_); });
   }

@@ -27,6 +27,8 @@ struct RecordedTick {
   bool starts = false;              ///< the first read after the device was started
 };
 
+namespace detail {
+
 /// First line of a recording. SI units; valid and starts are 0 or 1; buttons and status are bit masks.
 inline constexpr std::string_view recording_header =
     "time,x,y,z,vx,vy,vz,qw,qx,qy,qz,buttons,valid,fx,fy,fz,status,expected_error,error_bound,now,starts";
@@ -36,6 +38,8 @@ inline constexpr std::string_view recording_header_without_now =
     recording_header.substr(0, recording_header.find(",now"));
 inline constexpr std::string_view recording_header_without_errors =
     recording_header.substr(0, recording_header.find(",expected_error"));
+
+}  // namespace detail
 
 /// Writes a recording as CSV: every number reads back bitwise equal (a NaN as a NaN), in any locale. Throws
 /// SetupError(bad_file) when the file cannot be written.

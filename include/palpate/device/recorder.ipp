@@ -172,7 +172,7 @@ PALPATE_INLINE void write_recording(const std::string& path, std::span<const Rec
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   if (!stream)
     raise(SetupErrorKind::bad_file, path + ": not open for writing: " + std::generic_category().message(errno));
-  std::string text(recording_header);
+  std::string text(detail::recording_header);
   text += '\n';
   for (const RecordedTick& tick : ticks) {
     detail::append_tick(text, tick);

@@ -8,9 +8,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// The limits of a device that renders torque, or does not: without `torque`, peak torque and rotational stiffness are
 /// set to zero. Throws SetupError(bad_argument) with `torque` unless both are positive and finite.
 DeviceLimits with_torque(DeviceLimits limits, bool torque);
+
+}  // namespace detail
 
 /// Limits a commanded force to what a device renders: force and torque within their peaks; zero while stopped and while
 /// the last read was invalid. No allocation, no throw after construction.

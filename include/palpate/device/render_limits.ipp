@@ -10,6 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE DeviceLimits with_torque(DeviceLimits limits, bool torque) {
   if (!torque) limits.peak_torque = limits.rotational_stiffness = 0.0;
   for (const double value : {limits.peak_torque, limits.rotational_stiffness})
@@ -20,6 +22,8 @@ PALPATE_INLINE DeviceLimits with_torque(DeviceLimits limits, bool torque) {
             "Give both in the option `limits`, from the data sheet");
   return limits;
 }
+
+}  // namespace detail
 
 PALPATE_INLINE RenderLimits::RenderLimits(const DeviceLimits& limits) : limits_(limits) {
   if (!(limits.peak_force > 0.0 && std::isfinite(limits.peak_force)))
@@ -57,7 +61,7 @@ PALPATE_INLINE void RenderLimits::silence() noexcept {
 
 PALPATE_INLINE Vector3 RenderLimits::within(double most, const Vector3& wanted, Status& status) noexcept {
   bool shortened = false;
-  const Vector3 given = limit_length(wanted, most, shortened);
+  const Vector3 given = detail::limit_length(wanted, most, shortened);
   if (shortened) status.set(StatusFlag::saturated);
   return given;
 }

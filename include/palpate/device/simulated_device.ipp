@@ -116,7 +116,7 @@ PALPATE_INLINE SimulatedOptions SimulatedOptions::parallel_arm() {
 PALPATE_INLINE SimulatedDevice::SimulatedDevice(const SimulatedOptions& options)
     : options_(options),
       mechanics_(options.mass, options.damping, options.friction, options.hand, options.start),
-      rendered_(with_torque(options.limits, false)),
+      rendered_(detail::with_torque(options.limits, false)),
       random_(options.seed) {
   const SimulatedOptions& o = options;
   require(o.rate >= 0.1 && o.rate <= 1e6, "rate", o.rate, "Give 0.1 to 1e6 1/s");

@@ -18,11 +18,15 @@ struct MeanDilatation : E {
   static constexpr double locking_poisson_ratio = 0.5;  ///< no locking
 };
 
+namespace detail {
+
 /// An element with mean dilatation.
 template <class E>
 concept HasMeanDilatation = Element<E> && requires {
   requires E::mean_dilatation;
 };
+
+}  // namespace detail
 
 /// `E` whose stiffness, initial strain and energy are integrated with `Rule`, for instance `WithQuadrature<Tet10,
 /// TetrahedronRule<5>>` for strongly curved edges. A rule on a different domain fails the check "reference volume" of
@@ -46,10 +50,14 @@ requires(E::nodes == 4 && E::order == 1) struct Smoothed : E {
   static constexpr double locking_poisson_ratio = 0.5;  ///< no locking
 };
 
+namespace detail {
+
 /// An element with strain averaged over neighbours.
 template <class E>
 concept HasSmoothedStrain = Element<E> && requires {
   requires E::smoothed_strain;
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

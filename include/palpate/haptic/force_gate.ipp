@@ -113,7 +113,7 @@ PALPATE_INLINE double ForceGate::allowed_force() const noexcept {
 
 PALPATE_INLINE Vector3 ForceGate::clamp(const Vector3& wanted, double most, Status& status) noexcept {
   bool shortened = false;
-  const Vector3 force = limit_length(wanted, most, shortened);
+  const Vector3 force = detail::limit_length(wanted, most, shortened);
   if (shortened) status.set(StatusFlag::saturated);
   return force;
 }

@@ -20,6 +20,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
+class ForceErrorMeasurement;
+
 /// Follows a hand with a blade and requests cuts along the surface swept by the edge. Everything runs in the tick: no
 /// throw, no allocation, bounded.
 class ServoBlade {
@@ -46,6 +50,8 @@ class ServoBlade {
   Vector3 force_ = Vector3::Zero(), ordered_ = Vector3::Zero();
   Status status_;
 };
+
+}  // namespace detail
 
 /// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
 /// pose and passes it through the gate; no other path leads to the device. Refers to the tissue, which must outlive it;
@@ -128,7 +134,9 @@ class HapticServo {
   /// Whether a tool grasps a point of the surface. For the tick's own thread.
   bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
   /// State of a blade; null for another tool. For the tick's own thread.
-  const BladeCut* blade(std::size_t tool = 0) const noexcept { return blades_[tool] ? &blades_[tool]->cut() : nullptr; }
+  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept {
+    return blades_[tool] ? &blades_[tool]->cut() : nullptr;
+  }
   /// Limits of a tool's gate.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
   /// Energy tank of a tool; null without one. For the tick's own thread.
@@ -144,7 +152,7 @@ class HapticServo {
 
  private:
   friend class HapticSession;
-  friend class ForceErrorMeasurement;
+  friend class detail::ForceErrorMeasurement;
   HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
               std::vector<EnergyTank> energies);
 
@@ -152,7 +160,7 @@ class HapticServo {
   void add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options);
   void note_updates() noexcept;
   void take(std::size_t i, const ToolState& state) noexcept;
-  void take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
+  void take_blade(detail::ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
   bool is_lost(std::size_t i) noexcept;
   bool is_free(const Vector3& position, double depth) noexcept;
   bool sweep_lost_tools() noexcept;
@@ -165,14 +173,14 @@ class HapticServo {
   void publish() noexcept;
 
   TissueView tissue_;
-  ClaimedTissue claimed_;
+  detail::ClaimedTissue claimed_;
   std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
   ContactProblem problem_;
   CoarseFacetReport coarse_facets_;
-  std::vector<ToolInput> inputs_;
-  std::vector<std::optional<ServoBlade>> blades_;  // only for tools that are blades
+  std::vector<detail::ToolInput> inputs_;
+  std::vector<std::optional<detail::ServoBlade>> blades_;  // only for tools that are blades
   std::vector<ForceGate> gates_;
   std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;

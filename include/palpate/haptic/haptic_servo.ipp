@@ -12,6 +12,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE void ServoBlade::follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept {
   status_ = {};
   if (restart) cut_.lift();
@@ -57,8 +59,6 @@ PALPATE_INLINE bool ServoBlade::order_cut(const Vector3& to, const TissueView& t
 
 static_assert(Servo<HapticServo>);
 
-namespace detail {
-
 inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
   ToolRadii radii(no_sphere, 0.0);
   for (const ContactTool& tool : tools) {
@@ -100,9 +100,10 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       claimed_(tissue_.claim()),
       notes_(tissue_.notes()),
       tools_(tools),
-      contact_tools_(make_contact_tools(tools_, options)),
+      contact_tools_(detail::make_contact_tools(tools_, options)),
       problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact)),
-      coarse_facets_(report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
+      coarse_facets_(
+          detail::report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
       energies_(std::move(energies)),
       forces_(tools.size()),
       errors_(tools.size()),
@@ -181,7 +182,7 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   problem_.reset();
   started_ = false;
   updates_ = 0;
-  for (ToolInput& input : inputs_) input.reset();
+  for (detail::ToolInput& input : inputs_) input.reset();
   for (ContactTool& tool : contact_tools_) tool.reset();
   for (auto& blade : blades_)
     if (blade) blade->reset();
@@ -219,7 +220,7 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
   const bool has_news = !started_ || updates != updates_;
   updates_ = updates;
   started_ = true;
-  for (ToolInput& input : inputs_) input.note_tissue(has_news);
+  for (detail::ToolInput& input : inputs_) input.note_tissue(has_news);
 }
 
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
@@ -229,8 +230,8 @@ PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noe
 }
 
 /// A blade restarts if it moved farther in a tick than the length of its edge.
-PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, const ToolState& state) noexcept {
-  ToolInput& input = inputs_[i];
+PALPATE_INLINE void HapticServo::take_blade(detail::ServoBlade& blade, std::size_t i, const ToolState& state) noexcept {
+  detail::ToolInput& input = inputs_[i];
   input.take_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
   if (input.readable())
     blade.follow(tissue_.to_world() * input.position(), input.restarted(), tissue_);
@@ -243,14 +244,14 @@ PALPATE_INLINE void HapticServo::take_blade(ServoBlade& blade, std::size_t i, co
 /// tool that entered elsewhere passes until it is outside again.
 PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
   const ContactTool& tool = contact_tools_[i];
-  ToolInput& input = inputs_[i];
+  detail::ToolInput& input = inputs_[i];
   if (!tool.active || !detail::is_zero(tool.force)) return false;
   const ContactSurface& surface = tissue_.contact_surface();
   input.set_beside_surface(false);
   if (input.is_clear(surface.revision(), tool.proxy)) return false;
   bool inside = false, behind = false, beside = false;
   double least = infinity;
-  for_each_probe(tool, [&](const Vector3& probe) {
+  detail::for_each_probe(tool, [&](const Vector3& probe) {
     const Vector3 centre = tool.half_length > 0.0 ? tool.proxy + tool.rotation * probe : tool.proxy;
     const double distance = surface.distance_of_body(centre);
     least = std::min(least, distance);
@@ -289,7 +290,7 @@ PALPATE_INLINE bool HapticServo::sweep_lost_tools() noexcept {
     if (is_lost(i)) {
       any = inputs_[i].sweep_from_outside(surface, tool) || any;
     } else if (is_on_the_way(i)) {
-      sweep(tool, surface, tool.proxy, tool.target);
+      detail::sweep(tool, surface, tool.proxy, tool.target);
       any = true;
     }
   }
@@ -355,7 +356,7 @@ PALPATE_INLINE double HapticServo::estimate_error(std::size_t i) noexcept {
 /// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.
 PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const ContactTool& tool = contact_tools_[i];
-  const ToolInput& input = inputs_[i];
+  const detail::ToolInput& input = inputs_[i];
   EnergyTank* const energy = energies_.empty() ? nullptr : &energies_[i];
   const Eigen::Isometry3d& pose = tissue_.to_world();
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);

@@ -11,7 +11,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE RealtimeGrant detail::request_realtime(const LoopOptions& options) {
+namespace detail {
+
+PALPATE_INLINE RealtimeGrant request_realtime(const LoopOptions& options) {
   RealtimeGrant grant;
   grant.requested = options.real_time && options.paced;
   const auto granted = [&](int error, const char* what) {
@@ -25,6 +27,8 @@ PALPATE_INLINE RealtimeGrant detail::request_realtime(const LoopOptions& options
   grant.memory_locked = granted(platform::lock_memory(), "locking memory");
   return grant;
 }
+
+}  // namespace detail
 
 PALPATE_INLINE void ForceErrorReport::count(const ForceError& error) noexcept {
   if (!(error.force > 0.0)) return;

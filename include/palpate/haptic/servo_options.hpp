@@ -48,12 +48,12 @@ double coupling_stiffness_of(std::size_t tool, const ServoOptions& options);
 /// Radius of a tool without a sphere [m]: so large that it is never the smallest radius; never in contact.
 inline constexpr double no_sphere = 1e6;
 
-}  // namespace detail
-
 /// The tools of a servo in the contact problem; blades as tools that are never active. They refer to the shapes of the
 /// convex tools of the list, which must outlive them. Throws bad_argument for an
 /// invalid tool, coupling or number of tools, or when there are `devices`, but not one per tool (ids: the tool).
 std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

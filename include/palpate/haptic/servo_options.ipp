@@ -18,11 +18,11 @@ PALPATE_INLINE ForceLimits ServoOptions::limits(std::size_t tool) const {
   return force_limits.value_or(ForceLimits::from(device_of(tool), tick_rate()));
 }
 
-PALPATE_INLINE double detail::stable_at(double rate, const DeviceLimits& device, double stiffness) noexcept {
+namespace detail {
+
+PALPATE_INLINE double stable_at(double rate, const DeviceLimits& device, double stiffness) noexcept {
   return rate < device.rate ? stiffness * (rate / device.rate) : stiffness;
 }
-
-namespace detail {
 
 /// Smallest stiffness of a coupling [N/m], [N m/rad]: with less, its compliance could overflow.
 inline constexpr double softest_coupling = 1e-6;
@@ -78,8 +78,6 @@ inline ContactTool make_contact_tool(const ConvexTool& tool, std::size_t i, cons
   return made;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options) {
   if (tools.size() == 0 || tools.size() > maximum_tools)
     raise(SetupErrorKind::bad_argument,
@@ -92,15 +90,17 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
   std::vector<ContactTool> made;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* sphere = std::get_if<SphereTool>(&tools[i]))
-      made.push_back(detail::make_contact_tool(*sphere, i, options));
+      made.push_back(make_contact_tool(*sphere, i, options));
     else if (const auto* capsule = std::get_if<CapsuleTool>(&tools[i]))
-      made.push_back(detail::make_contact_tool(*capsule, i, options));
+      made.push_back(make_contact_tool(*capsule, i, options));
     else if (const auto* convex = std::get_if<ConvexTool>(&tools[i]))
-      made.push_back(detail::make_contact_tool(*convex, i, options));
+      made.push_back(make_contact_tool(*convex, i, options));
     else
-      made.emplace_back().radius = detail::no_sphere;
+      made.emplace_back().radius = no_sphere;
   }
   return made;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

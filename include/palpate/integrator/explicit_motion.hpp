@@ -17,6 +17,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Power iteration on M^-1 K, where K times a vector is a difference of two forces. Constrained dofs do not move. The
 /// vector is kept between calls, so that a few iterations per call follow a body that stiffens under load. The estimate
 /// is from below: after 20 iterations from a random start it is up to 5 % too low, after 40 up to 3 %; the margin
@@ -107,6 +109,8 @@ inline double StepLimit::start_value(std::uint64_t i) noexcept {
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
 }
 
+}  // namespace detail
+
 struct ExplicitOptions {
   double damping = 0.0;        ///< alpha of the mass-proportional damping [1/s]
   double margin = 0.07;        ///< relative safety margin below the estimated stable limit
@@ -148,7 +152,7 @@ class ExplicitMotion {
     const Index dofs = force_.size();
     for (VectorX* v : {&state_.displacement, &state_.velocity, &state_.force, &state_.load, &state_.target})
       *v = VectorX::Zero(dofs);
-    state_.mass = mass_of_dofs(nodal_mass);
+    state_.mass = detail::mass_of_dofs(nodal_mass);
     state_.free = free_dofs;
     std::vector<char> is_free(static_cast<std::size_t>(dofs), 0);
     for (Index dof : free_dofs) is_free[static_cast<std::size_t>(dof)] = 1;
@@ -206,19 +210,20 @@ class ExplicitMotion {
   /// Sets displacement and velocity (at the same time), and restarts, with an estimate of the limit that does not
   /// depend on states before. Throws bad_argument, without a change, for vectors that do not have one entry per dof.
   void set(const VectorX& displacement, const VectorX& velocity) {
-    for (const VectorX* v : {&displacement, &velocity}) require_entries(*v, force_.size());
+    for (const VectorX* v : {&displacement, &velocity}) detail::require_entries(*v, force_.size());
     state_.displacement = displacement;
     state_.velocity = velocity;
     state_.target = displacement;
     if (options_.limit_every > 0) limit_.restart();
     restart();
-    if (options_.limit_every > 0) estimate_limit(StepLimit::settled);  // more, since it began with a random vector
+    if (options_.limit_every > 0)
+      estimate_limit(detail::StepLimit::settled);  // more, since it began with a random vector
   }
   /// Resets the work, estimates the limit again (some 20 to 40 forces, none if limit_every is 0), and lets a stopped
   /// motion continue.
   void restart() noexcept {
     begin();
-    if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, StepLimit::settled));
+    if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, detail::StepLimit::settled));
   }
 
   /// Largest step that is accepted [s], estimated at most limit_every steps ago.
@@ -297,10 +302,10 @@ class ExplicitMotion {
     if (!(frequency_bound > 0.0))
       raise(SetupErrorKind::bad_argument, "the bound of omega^2 is " + number(frequency_bound),
             "Give element_frequency_bound(body), or infinity");
-    if (frequency_bound == infinity && options_.first_iterations < StepLimit::settled)
+    if (frequency_bound == infinity && options_.first_iterations < detail::StepLimit::settled)
       raise(SetupErrorKind::bad_argument,
             "the stable step would be estimated by " + std::to_string(options_.first_iterations) + " iterations",
-            "Give a bound of omega^2, or " + std::to_string(StepLimit::settled) + " first_iterations or more");
+            "Give a bound of omega^2, or " + std::to_string(detail::StepLimit::settled) + " first_iterations or more");
   }
 
   /// Starts counting work and energy at the current state.
@@ -365,7 +370,7 @@ class ExplicitMotion {
   Force force_;
   ExplicitOptions options_;
   MotionState state_;
-  StepLimit limit_;
+  detail::StepLimit limit_;
   Good good_;
   VectorX reactions_, constrained_before_;
   double work_ = 0.0, gross_ = 0.0, load_work_ = 0.0, start_energy_ = 0.0, total_mass_ = 0.0;

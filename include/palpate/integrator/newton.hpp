@@ -27,6 +27,8 @@ struct NewtonReport {
   double relative_residual = infinity;  ///< of the force; where iterations end early also of the energy, if larger
 };
 
+namespace detail {
+
 /// Newton's method with Armijo's rule on the potential (Nocedal and Wright, Numerical Optimization, 3.1). Near the
 /// minimum, where differences of the potential are lost to rounding, the rule uses the residual. Owns its workspaces:
 /// solving does not allocate.
@@ -97,6 +99,8 @@ class NewtonMethod {
   VectorX residual_, step_, trial_, trial_residual_;
 };
 
+}  // namespace detail
+
 inline void NewtonParameters::require_usable() const {
   const auto refuse = [](const char* name, const std::string& value, const char* hint) {
     raise(SetupErrorKind::bad_argument, std::string("Newton's ") + name + " is " + value, hint);
@@ -107,9 +111,13 @@ inline void NewtonParameters::require_usable() const {
   if (maximum_halvings < 0) refuse("maximum_halvings", std::to_string(maximum_halvings), "Give 0 or more");
 }
 
+namespace detail {
+
 inline NewtonMethod::NewtonMethod(Index size, const NewtonParameters& parameters)
     : parameters_(parameters), residual_(size), step_(size), trial_(size), trial_residual_(size) {
   parameters_.require_usable();
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -27,6 +27,8 @@ struct QuasiNewtonReport {
   double relative_residual = infinity;
 };
 
+namespace detail {
+
 /// A potential with an approximate inverse of its second derivative.
 /// - `evaluate(x, residual)`, `scale()`, `rounding()` as in NewtonProblem.
 /// - `precondition(r, d)`: d = H r with a positive definite H, near the inverse of the second derivative.
@@ -54,6 +56,8 @@ concept QuasiNewtonProblem = requires(P& p, const VectorX& x, VectorX& y) {
   noexcept->std::convertible_to<bool>;
 };
 
+}  // namespace detail
+
 /// Limited-memory BFGS with H as the initial inverse (Nocedal and Wright, Numerical Optimization, 7.2; with a factor as
 /// H: Liu, Bouaziz and Kavan 2017), and a line search with Armijo's rule; where differences of the potential are lost
 /// to rounding, with the approximate rule of Hager and Zhang (2005). The potential does not increase by more than its
@@ -69,7 +73,7 @@ class QuasiNewtonMethod {
   void forget() noexcept { count_ = 0; }
 
   /// Evaluates the potential at x, where the next iteration starts. Returns it.
-  template <QuasiNewtonProblem P>
+  template <detail::QuasiNewtonProblem P>
   double start(P& problem, const VectorX& x) noexcept {
     potential_ = problem.evaluate(x, residual_);
     return potential_;
@@ -78,14 +82,14 @@ class QuasiNewtonMethod {
   void start_from(double potential) noexcept { potential_ = potential; }
   /// One iteration from x, at which the problem must have been evaluated last; on return this holds for the new x.
   /// Returns false, with x unchanged, when no step was found.
-  template <QuasiNewtonProblem P>
+  template <detail::QuasiNewtonProblem P>
   bool iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept;
   /// Iterates until the residual is small or a limit is reached. `start` comes first.
-  template <QuasiNewtonProblem P>
+  template <detail::QuasiNewtonProblem P>
   QuasiNewtonReport solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept;
 
   /// d = inverse of the second derivative times r, as known from H and the pairs. One solve.
-  template <QuasiNewtonProblem P>
+  template <detail::QuasiNewtonProblem P>
   void respond(P& problem, const VectorX& r, VectorX& d) noexcept {
     find_direction(problem, r, d);
   }
@@ -95,7 +99,7 @@ class QuasiNewtonMethod {
   /// the last d, which then follows A. Products with A are differences of the problem's residual over a small part of
   /// d, and are also stored as pairs. At most two evaluations and one solve, no allocation. Returns false, with d = 0,
   /// where A is not positive on these vectors.
-  template <QuasiNewtonProblem P>
+  template <detail::QuasiNewtonProblem P>
   bool improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept;
 
   double potential() const noexcept { return potential_; }
@@ -124,7 +128,7 @@ class QuasiNewtonMethod {
   double potential_ = infinity;
 };
 
-template <QuasiNewtonProblem P>
+template <detail::QuasiNewtonProblem P>
 QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNewtonLimits& limits) noexcept {
   QuasiNewtonReport report;
   if (!(potential_ < infinity)) return report;
@@ -161,7 +165,7 @@ QuasiNewtonReport QuasiNewtonMethod::solve(P& problem, VectorX& x, const QuasiNe
   }
 }
 
-template <QuasiNewtonProblem P>
+template <detail::QuasiNewtonProblem P>
 bool QuasiNewtonMethod::iterate(P& problem, VectorX& x, QuasiNewtonReport& report) noexcept {
   const double work = find_direction(problem);
   ++report.iterations;
@@ -233,7 +237,7 @@ bool QuasiNewtonMethod::multiply(P& problem, const VectorX& x, const VectorX& d,
   return true;
 }
 
-template <QuasiNewtonProblem P>
+template <detail::QuasiNewtonProblem P>
 bool QuasiNewtonMethod::improve(P& problem, const VectorX& x, const VectorX& f, VectorX& d) noexcept {
   constexpr double exact = 1e-3;       // smaller residuals are lost to the rounding of the differences
   constexpr double least_part = 1e-9;  // of the energy of a direction, beside d

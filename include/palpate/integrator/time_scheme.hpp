@@ -21,6 +21,8 @@ struct TimeScheme {
   }
 };
 
+namespace detail {
+
 /// Evaluates a TimeScheme for a step length h and a state: the predicted displacement without new acceleration, and
 /// velocity and acceleration at the end as functions of the displacement there. Vectors have one entry per dof. Only
 /// the constructor allocates.
@@ -70,5 +72,7 @@ inline double ImplicitStep::potential(const VectorX& velocity, const VectorX& da
   return 0.5 / velocity_per_displacement() * velocity.dot(damping_force) +
          0.5 / acceleration_per_displacement() * acceleration.dot(inertia);
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

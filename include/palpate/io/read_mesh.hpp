@@ -98,13 +98,14 @@ FileMesh parse(std::string_view text, const std::string& name);
 
 /// The mesh of a parsed file with elements of that layout, for which solid_shape must be valid; `numbering`, if given,
 /// receives the ids of the file.
-PlainMesh build_plain_mesh(FileMesh file, const ElementLayout& element, double scale, MeshNumbering* numbering);
+palpate::detail::PlainMesh build_plain_mesh(FileMesh file, const palpate::detail::ElementLayout& element, double scale,
+                                            MeshNumbering* numbering);
 
 /// The same as a mesh of E.
 template <Element E>
 Mesh<E> build_mesh(FileMesh file, double scale, MeshNumbering* numbering) {
   static_assert(facts(solid_shape<E>()).nodes == E::nodes);
-  return to_mesh<E>(build_plain_mesh(std::move(file), element_layout<E>, scale, numbering));
+  return to_mesh<E>(build_plain_mesh(std::move(file), palpate::detail::element_layout<E>, scale, numbering));
 }
 
 /// Options of the mesh readers.

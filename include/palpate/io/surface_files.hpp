@@ -27,7 +27,8 @@ inline void check_displacement(Index size, Index nodes) {
 }
 
 /// Adds the triangles of a face to the end of `triangles`: `face` lists its nodes.
-void add_triangles(const FaceLayout& layout, const NodeId* face, std::vector<std::array<NodeId, 3>>& triangles);
+void add_triangles(const palpate::detail::FaceLayout& layout, const NodeId* face,
+                   std::vector<std::array<NodeId, 3>>& triangles);
 
 /// Renumbers the nodes of triangles 0, 1, ... and returns their original ids, ascending.
 std::vector<NodeId> compress_nodes(std::vector<std::array<NodeId, 3>>& triangles);
@@ -37,7 +38,7 @@ std::vector<NodeId> compress_nodes(std::vector<std::array<NodeId, 3>>& triangles
 /// errors of extract_boundary.
 template <Element E, MeshOf<E> M>
 TriangleSurface triangle_surface(const M& mesh, const VectorX& displacement = {}) {
-  constexpr const ElementLayout& element = element_layout<E>;
+  constexpr const palpate::detail::ElementLayout& element = palpate::detail::element_layout<E>;
   static_assert(element.face.triangle_count > 0 && (element.small_face.nodes == 0) == !HasSmallFace<E>);
   check_displacement(displacement.size(), mesh.node_count());
   TriangleSurface surface;
@@ -72,7 +73,8 @@ void write_stl(const std::string& path, const Mesh<E>& mesh, const VectorX& disp
   write_stl(path, triangle_surface<E>(mesh, displacement));
 }
 
-inline void add_triangles(const FaceLayout& layout, const NodeId* face, std::vector<std::array<NodeId, 3>>& triangles) {
+inline void add_triangles(const palpate::detail::FaceLayout& layout, const NodeId* face,
+                          std::vector<std::array<NodeId, 3>>& triangles) {
   for (int t = 0; t < layout.triangle_count; ++t) {
     const std::array<int, 3>& local = layout.triangles[t];
     triangles.push_back({face[local[0]], face[local[1]], face[local[2]]});

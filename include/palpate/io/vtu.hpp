@@ -38,7 +38,7 @@ void write_vtu(const std::string& path, const MeshRef& mesh, const VtuFields& fi
 template <Element E, MeshOf<E> M>
 void write_vtu(const std::string& path, const M& mesh, const VtuFields& fields = {}) {
   static_assert(facts(solid_shape<E>()).nodes == E::nodes);
-  const PlainMesh copy = plain_copy<E>(mesh);
+  const palpate::detail::PlainMesh copy = palpate::detail::plain_copy<E>(mesh);
   write_vtu(path, mesh_ref<E>(copy), fields);
 }
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// When to stop.
 struct BoundedSolveParameters {
@@ -40,30 +40,30 @@ class BoundedConjugateGradient {
 inline BoundedSolveReport BoundedConjugateGradient::solve_into(const OperatorView& op, const VectorX& b, VectorX& x,
                                                                const BoundedSolveParameters& parameters) noexcept {
   BoundedSolveReport report;
-  detail::fill(x, 0.0);
+  fill(x, 0.0);
   r_ = b;
   op.precondition(r_, z_);
   p_ = z_;
-  double rz = detail::dot(r_, z_), whole = 0.0;
+  double rz = dot(r_, z_), whole = 0.0;
   if (rz == 0.0) return {true, 0, 0.0};
   while (!report.converged && report.iterations < parameters.maximum_iterations) {
     op.apply(p_, q_);
-    const double alpha = rz / detail::dot(p_, q_);
+    const double alpha = rz / dot(p_, q_);
     if (!(alpha > 0.0 && alpha < infinity && rz < infinity)) return report;
-    detail::add_scaled(x, alpha, p_);
+    add_scaled(x, alpha, p_);
     ++report.iterations;
     whole += alpha * rz;
     report.error = std::sqrt(alpha * rz / whole);
     report.converged = report.error <= parameters.tolerance;
     if (report.converged) break;
-    detail::add_scaled(r_, -alpha, q_);
+    add_scaled(r_, -alpha, q_);
     op.precondition(r_, z_);
-    const double next = detail::dot(r_, z_);
-    detail::scale_and_add(p_, next / rz, z_);
+    const double next = dot(r_, z_);
+    scale_and_add(p_, next / rz, z_);
     rz = next;
     if (rz == 0.0) report.converged = true;
   }
   return report;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

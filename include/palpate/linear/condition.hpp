@@ -5,6 +5,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Estimate of |K^-1|_1 for symmetric K (Hager 1984, Higham 1988; usually within a factor 3, always a lower bound) from
 /// two to ten solves, usually four to six. Allocates; NaN when a solve is not finite.
 double inverse_norm_estimate(SolverView solver);
@@ -13,9 +15,13 @@ double inverse_norm_estimate(SolverView solver);
 /// solves are expensive. Usually within a factor 10. Allocates; NaN when a solve is not finite.
 double condition_by_iteration(const OperatorView& op, SolverView solver);
 
+}  // namespace detail
+
 /// Solves K x = K t for a fixed random t and returns |x - t| / |t|: the measured accuracy, independent of residuals.
 /// Infinity when the solution is not finite. Allocates.
-double probe_error(const OperatorView& op, SolverView solver);
+double probe_error(const detail::OperatorView& op, detail::SolverView solver);
+
+namespace detail {
 
 /// Accuracy of a solver for the softest motion of an operator.
 struct SoftestMotion {
@@ -27,6 +33,8 @@ struct SoftestMotion {
 /// In a random solution one motion has only a share of 1 / sqrt(n); if rounding loses a single motion, this test shows
 /// the full loss. Infinity when a solution is not finite. Three solves; allocates.
 SoftestMotion probe_softest_motion(const OperatorView& op, SolverView solver);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

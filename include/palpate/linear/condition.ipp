@@ -23,13 +23,11 @@ inline bool take_signs(const VectorX& y, VectorX& signs) noexcept {
   return changed;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
   const Index n = solver.size();
   if (n == 0) return 0.0;
-  VectorX x(n), y(n), z(n), signs = detail::zeros(n);
-  detail::fill(x, 1.0 / static_cast<double>(n));
+  VectorX x(n), y(n), z(n), signs = zeros(n);
+  fill(x, 1.0 / static_cast<double>(n));
   double estimate = 0.0;
   for (int sweep = 0; sweep < 5; ++sweep) {
     solver.solve_into(x, y);
@@ -38,19 +36,17 @@ PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
     if (!std::isfinite(norm)) return norm;
     if (norm <= estimate) break;
     estimate = norm;
-    if (!detail::take_signs(y, signs)) break;
+    if (!take_signs(y, signs)) break;
     solver.solve_into(signs, z);
     Index largest = 0;
     for (Index i = 1; i < n; ++i)
       if (std::abs(z.data()[i]) > std::abs(z.data()[largest])) largest = i;
-    if (std::abs(z.data()[largest]) <= detail::dot(z, x)) break;  // a local maximum of the norm
-    detail::fill(x, 0.0);
+    if (std::abs(z.data()[largest]) <= dot(z, x)) break;  // a local maximum of the norm
+    fill(x, 0.0);
     x.data()[largest] = 1.0;
   }
   return estimate;
 }
-
-namespace detail {
 
 inline VectorX random_answer(Index n) {
   std::mt19937_64 generator(20250101);
@@ -85,34 +81,38 @@ double norm_by_iteration(Index size, int steps, Apply apply) {
   return length;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE double condition_by_iteration(const OperatorView& op, SolverView solver) {
   const Index n = solver.size();
   if (n == 0) return 0.0;
-  return detail::norm_by_iteration(n, 10, [&](const VectorX& x, VectorX& y) { op.apply(x, y); }) *
-         detail::norm_by_iteration(n, 2, [&](const VectorX& x, VectorX& y) { solver.solve_into(x, y); });
+  return norm_by_iteration(n, 10, [&](const VectorX& x, VectorX& y) { op.apply(x, y); }) *
+         norm_by_iteration(n, 2, [&](const VectorX& x, VectorX& y) { solver.solve_into(x, y); });
 }
 
-PALPATE_INLINE double probe_error(const OperatorView& op, SolverView solver) {
+}  // namespace detail
+
+PALPATE_INLINE double probe_error(const detail::OperatorView& op, detail::SolverView solver) {
   if (solver.size() == 0) return 0.0;
   return detail::error_of_solve(op, solver, detail::random_answer(solver.size()));
 }
 
+namespace detail {
+
 PALPATE_INLINE SoftestMotion probe_softest_motion(const OperatorView& op, SolverView solver) {
   const Index n = solver.size();
   if (n == 0) return {};
-  VectorX motion = detail::random_answer(n), x(n);
+  VectorX motion = random_answer(n), x(n);
   for (int sweep = 0; sweep < 2; ++sweep) {
     solver.solve_into(motion, x);
-    const double length = detail::norm(x);
+    const double length = norm(x);
     if (!(length > 0.0 && std::isfinite(length))) return {infinity, 0};
     for (Index i = 0; i < n; ++i) motion.data()[i] = x.data()[i] / length;
   }
-  SoftestMotion softest{detail::error_of_solve(op, solver, motion), 0};
+  SoftestMotion softest{error_of_solve(op, solver, motion), 0};
   for (Index i = 1; i < n; ++i)
     if (std::abs(motion.data()[i]) > std::abs(motion.data()[softest.largest])) softest.largest = i;
   return softest;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

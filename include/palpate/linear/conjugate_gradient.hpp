@@ -11,7 +11,7 @@
 #include <memory>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// When to stop.
 struct ConjugateGradientParameters {
@@ -86,7 +86,7 @@ inline ConjugateGradientSolver::ConjugateGradientSolver(Index size, ConjugateGra
 
 inline SolveReport ConjugateGradientSolver::solve_into(const OperatorView& op, const VectorX& b, VectorX& x) noexcept {
   SolveReport report{.converged = false};
-  detail::fill(x, 0.0);
+  fill(x, 0.0);
   r_ = b;
   const Norms load = precondition_residual(op);
   if (!(load.plain > 0.0) || !std::isfinite(load.plain)) {
@@ -100,7 +100,7 @@ inline SolveReport ConjugateGradientSolver::solve_into(const OperatorView& op, c
   while (going && !at_floor && !report.converged) {
     going = iterate(op, load, reached, x, report.iterations);
     op.apply(x, q_);
-    detail::subtract(b, q_, r_);
+    subtract(b, q_, r_);
     const Norms now = precondition_residual(op);
     at_floor = !(now.preconditioned < 0.5 * reached.preconditioned);
     if (!(now.preconditioned < reached.preconditioned)) break;
@@ -111,7 +111,7 @@ inline SolveReport ConjugateGradientSolver::solve_into(const OperatorView& op, c
   x = best_;
   report.relative_residual = reached.plain / load.plain;
   constexpr double attainable = 1e-12;
-  const double scale = operator_norm_ * detail::norm(x) + load.plain;
+  const double scale = operator_norm_ * norm(x) + load.plain;
   report.converged =
       report.converged || (going && reached.plain <= std::max(parameters_.tolerance, attainable) * scale);
   return report;
@@ -119,7 +119,7 @@ inline SolveReport ConjugateGradientSolver::solve_into(const OperatorView& op, c
 
 inline ConjugateGradientSolver::Norms ConjugateGradientSolver::precondition_residual(const OperatorView& op) noexcept {
   op.precondition(r_, z_);
-  return {detail::norm(r_), std::sqrt(detail::dot(r_, z_))};
+  return {norm(r_), std::sqrt(dot(r_, z_))};
 }
 
 inline bool ConjugateGradientSolver::iterate(const OperatorView& op, const Norms& load, const Norms& start, VectorX& x,
@@ -131,19 +131,19 @@ inline bool ConjugateGradientSolver::iterate(const OperatorView& op, const Norms
   while (!now.within(0.5 * parameters_.tolerance, load) && now.preconditioned > most_per_round * start.preconditioned) {
     if (iterations == parameters_.maximum_iterations) return false;
     op.apply(p_, q_);
-    const double curvature = detail::dot(p_, q_);
+    const double curvature = dot(p_, q_);
     if (!(curvature > 0.0) || !std::isfinite(curvature)) return false;
     if (first) {  // K p is rich in the stiffest motions
       op.apply(q_, z_);
-      operator_norm_ = std::max(operator_norm_, detail::norm(z_) / detail::norm(q_));
+      operator_norm_ = std::max(operator_norm_, norm(z_) / norm(q_));
       first = false;
     }
     const double before = now.preconditioned * now.preconditioned;
-    detail::add_scaled(x, before / curvature, p_);
-    detail::add_scaled(r_, -before / curvature, q_);
+    add_scaled(x, before / curvature, p_);
+    add_scaled(r_, -before / curvature, q_);
     now = precondition_residual(op);
     if (!std::isfinite(now.preconditioned)) return false;
-    detail::scale_and_add(p_, now.preconditioned * now.preconditioned / before, z_);
+    scale_and_add(p_, now.preconditioned * now.preconditioned / before, z_);
     ++iterations;
   }
   return true;
@@ -191,7 +191,7 @@ inline DenseOperator::DenseOperator(MatrixX matrix) : inverse_diagonal_(matrix.r
 }
 
 inline void DenseOperator::apply(const VectorX& x, VectorX& y) const noexcept {
-  detail::symmetric_product(*matrix_, x.data(), y.data());
+  symmetric_product(*matrix_, x.data(), y.data());
 }
 
 inline void DenseOperator::precondition(const VectorX& x, VectorX& y) const noexcept {
@@ -199,11 +199,11 @@ inline void DenseOperator::precondition(const VectorX& x, VectorX& y) const noex
 }
 
 inline void DenseConjugateGradient::write(BinaryWriter& out) const {
-  detail::write_dense(out, op_.matrix());
+  write_dense(out, op_.matrix());
 }
 
 inline DenseConjugateGradient DenseConjugateGradient::read(BinaryReader& in, Index size, const SetupLimits& limits) {
-  return {detail::read_dense<double>(in, size, limits), limits};
+  return {read_dense<double>(in, size, limits), limits};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -48,7 +48,7 @@ inline void add_pass(const float* matrix, Index n, const Index* columns, const d
 
 template <std::floating_point Scalar>
 DenseInverse<Scalar>::DenseInverse(MatrixX matrix, const SetupLimits& limits) {
-  SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
+  detail::SpdInverse::invert(matrix, 1e-15, "the condensed stiffness is not positive definite", limits.threads);
   if constexpr (std::same_as<Scalar, double>) {
     inverse_ = std::make_shared<const Matrix>(std::move(matrix));
   } else {

@@ -4,7 +4,7 @@
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/linear/detail/cholesky_analysis.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Precision in which solves read a factor. Single: half the time, a relative error of about 1e-6 times the condition,
 /// half more memory. For preconditioners.
@@ -42,7 +42,7 @@ class RepeatedCholesky {
   bool ready_ = false;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/linear/repeated_cholesky.ipp>

@@ -17,9 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A copy of a factor in single precision: a solve reads half as many bytes. Refers to the tree, which must outlive it.
 /// Only the constructor allocates.
@@ -93,8 +91,6 @@ class FrontFactorisation {
   BigArray workspace_;
 };
 
-}  // namespace detail
-
 static_assert(LinearSolver<RepeatedCholesky>);
 
 struct RepeatedCholesky::Factor {
@@ -104,14 +100,14 @@ struct RepeatedCholesky::Factor {
         sweeps(analysis.tree(), values.data(), analysis.front_count()) {
     std::fill_n(values.data() + values.size() - padding, padding, 0.0);
     if (scalar == FactorScalar::single_precision)
-      single = std::make_unique<detail::SingleSweeps>(analysis.tree(), analysis.front_count());
+      single = std::make_unique<SingleSweeps>(analysis.tree(), analysis.front_count());
   }
 
   static constexpr Index padding = 64;  // zeros after the factor, for kernels that read past its end
-  detail::BigArray values;
-  detail::FrontFactorisation factorisation;
-  detail::FrontSweeps sweeps;
-  std::unique_ptr<detail::SingleSweeps> single;  // used instead, if present
+  BigArray values;
+  FrontFactorisation factorisation;
+  FrontSweeps sweeps;
+  std::unique_ptr<SingleSweeps> single;  // used instead, if present
 };
 
 PALPATE_INLINE RepeatedCholesky::RepeatedCholesky(CholeskyAnalysis analysis, const SetupLimits& limits,
@@ -141,7 +137,7 @@ PALPATE_INLINE SolveReport RepeatedCholesky::solve_into(const VectorX& b, Vector
     factor_->single->solve(b.data(), x.data());
     return {true, 0, std::numeric_limits<double>::quiet_NaN()};
   }
-  detail::FrontSweeps& sweeps = factor_->sweeps;
+  FrontSweeps& sweeps = factor_->sweeps;
   sweeps.scatter(b.data());
   sweeps.forward_all();
   sweeps.backward_all();
@@ -149,4 +145,4 @@ PALPATE_INLINE SolveReport RepeatedCholesky::solve_into(const VectorX& b, Vector
   return {true, 0, std::numeric_limits<double>::quiet_NaN()};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -26,7 +26,7 @@ class ParallelFronts;
 /// `recover_into` computes the other dofs.
 class SparseCholesky {
  public:
-  using Matrix = SparseLower;
+  using Matrix = detail::SparseLower;
   /// Smallest pivot allowed, relative to its own diagonal entry. Rounding turns the zero pivots of a free body into
   /// values that start at 1e-15 and grow with the mesh; a supported beam 3000 times as long as thick still has 1e-12.
   static constexpr double pivot_threshold = 1e-13;
@@ -38,23 +38,24 @@ class SparseCholesky {
   SparseCholesky(const Matrix& lower, const SetupLimits& limits);
 
   /// Factorises new values on an analysed pattern. Throws as above, and bad_argument for a different pattern.
-  SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits);
+  SparseCholesky(detail::CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits);
 
   /// Factorises all but the kept dofs and writes their exact Schur complement K_kk - K_ki K_ii^-1 K_ik, symmetric to
   /// the last bit, in the given order of the kept dofs [kept x kept]. Costs one factorisation. Throws as above.
-  static SparseCholesky interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
+  static SparseCholesky interior(detail::CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
                                  const SetupLimits& limits);
 
   /// Writes the numbers of the factor. The structure is recomputed by analysis, so a file contains no indices.
   void write(BinaryWriter& out) const;
   /// Reads what `write` stored of a complete (or interior) factor of a matrix with this analysis. Valid only when the
   /// reader is good. Throws too_large.
-  static SparseCholesky read(BinaryReader& in, CholeskyAnalysis analysis, bool interior, const SetupLimits& limits);
+  static SparseCholesky read(BinaryReader& in, detail::CholeskyAnalysis analysis, bool interior,
+                             const SetupLimits& limits);
 
   Index size() const noexcept;
   /// Number of kept dofs that were not eliminated; 0 for a complete factor.
   Index kept() const noexcept;
-  const CholeskyAnalysis& analysis() const noexcept;
+  const detail::CholeskyAnalysis& analysis() const noexcept;
   Index factor_nonzeros() const noexcept;
   std::size_t bytes() const noexcept;
 
@@ -76,7 +77,7 @@ class SparseCholesky {
 
   /// Interior factor: forward substitution of unit loads on `dofs`, none of them kept. Visits only the fronts above
   /// them. Allocates a workspace.
-  ReducedUnits reduce_units(std::span<const Index> dofs) const;
+  detail::ReducedUnits reduce_units(std::span<const Index> dofs) const;
 
   /// Entries `wanted` of K^-1 b, where b is zero except for `loads` on the dofs `loaded`. Visits only the fronts above
   /// the loaded and the wanted dofs; equals `solve_into` to the last bit. No allocation.
@@ -86,10 +87,10 @@ class SparseCholesky {
  private:
   struct Factor;
 
-  SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur, const SetupLimits& limits);
-  static std::shared_ptr<Factor> allocate(const CholeskyAnalysis& analysis, bool interior);
-  static MatrixX complement(const CholeskyAnalysis& analysis, detail::ParallelFronts& fronts);
-  void adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis);
+  SparseCholesky(detail::CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur, const SetupLimits& limits);
+  static std::shared_ptr<Factor> allocate(const detail::CholeskyAnalysis& analysis, bool interior);
+  static MatrixX complement(const detail::CholeskyAnalysis& analysis, detail::ParallelFronts& fronts);
+  void adopt(std::shared_ptr<Factor> made, detail::CholeskyAnalysis analysis);
   void hold_kept() noexcept;
 
   std::shared_ptr<const Factor> factor_;

@@ -17,7 +17,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 static_assert(LinearSolver<SparseCholesky>);
 
 struct SparseCholesky::Factor {
-  CholeskyAnalysis analysis;
+  detail::CholeskyAnalysis analysis;
   detail::BigArray values;
   Index fronts = 0;  // eliminated
   Index kept = 0;    // dofs that were not eliminated
@@ -30,17 +30,18 @@ struct SparseCholesky::Factor {
 };
 
 PALPATE_INLINE SparseCholesky::SparseCholesky(const Matrix& lower, const SetupLimits& limits)
-    : SparseCholesky(CholeskyAnalysis(lower, {}, limits), lower, limits) {}
+    : SparseCholesky(detail::CholeskyAnalysis(lower, {}, limits), lower, limits) {}
 
-PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, const SetupLimits& limits)
+PALPATE_INLINE SparseCholesky::SparseCholesky(detail::CholeskyAnalysis analysis, const Matrix& lower,
+                                              const SetupLimits& limits)
     : SparseCholesky(std::move(analysis), lower, nullptr, limits) {}
 
-PALPATE_INLINE SparseCholesky SparseCholesky::interior(CholeskyAnalysis analysis, const Matrix& lower, MatrixX& schur,
-                                                       const SetupLimits& limits) {
+PALPATE_INLINE SparseCholesky SparseCholesky::interior(detail::CholeskyAnalysis analysis, const Matrix& lower,
+                                                       MatrixX& schur, const SetupLimits& limits) {
   return SparseCholesky(std::move(analysis), lower, &schur, limits);
 }
 
-PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur,
+PALPATE_INLINE SparseCholesky::SparseCholesky(detail::CholeskyAnalysis analysis, const Matrix& lower, MatrixX* schur,
                                               const SetupLimits& limits) {
   if (!lower.isCompressed() || !analysis.fits(lower))
     raise(SetupErrorKind::bad_argument, "the matrix does not have the analysed pattern",
@@ -63,7 +64,8 @@ PALPATE_INLINE SparseCholesky::SparseCholesky(CholeskyAnalysis analysis, const M
 }
 
 /// The last front before its elimination: the Schur complement of the kept dofs in the given order.
-PALPATE_INLINE MatrixX SparseCholesky::complement(const CholeskyAnalysis& analysis, detail::ParallelFronts& fronts) {
+PALPATE_INLINE MatrixX SparseCholesky::complement(const detail::CholeskyAnalysis& analysis,
+                                                  detail::ParallelFronts& fronts) {
   const auto k = static_cast<Index>(analysis.kept().size());
   if (k == 0) return {};
   const detail::FrontTree& tree = analysis.tree();
@@ -82,8 +84,8 @@ PALPATE_INLINE MatrixX SparseCholesky::complement(const CholeskyAnalysis& analys
 }
 
 /// Allocates a factor without values; omits the last front when `interior` and there are kept dofs.
-PALPATE_INLINE std::shared_ptr<SparseCholesky::Factor> SparseCholesky::allocate(const CholeskyAnalysis& analysis,
-                                                                                bool interior) {
+PALPATE_INLINE std::shared_ptr<SparseCholesky::Factor> SparseCholesky::allocate(
+    const detail::CholeskyAnalysis& analysis, bool interior) {
   const detail::FrontTree& tree = analysis.tree();
   auto made = std::make_shared<Factor>();
   made->fronts = tree.fronts.size();
@@ -97,7 +99,7 @@ PALPATE_INLINE std::shared_ptr<SparseCholesky::Factor> SparseCholesky::allocate(
   return made;
 }
 
-PALPATE_INLINE void SparseCholesky::adopt(std::shared_ptr<Factor> made, CholeskyAnalysis analysis) {
+PALPATE_INLINE void SparseCholesky::adopt(std::shared_ptr<Factor> made, detail::CholeskyAnalysis analysis) {
   made->analysis = std::move(analysis);
   sweeps_ = detail::FrontSweeps(made->tree(), made->values.data(), made->fronts);
   factor_ = std::move(made);
@@ -108,11 +110,11 @@ PALPATE_INLINE void SparseCholesky::write(BinaryWriter& out) const {
   out.array(std::span<const double>(factor_->values.data(), static_cast<std::size_t>(factor_->stored())));
 }
 
-PALPATE_INLINE SparseCholesky SparseCholesky::read(BinaryReader& in, CholeskyAnalysis analysis, bool interior,
+PALPATE_INLINE SparseCholesky SparseCholesky::read(BinaryReader& in, detail::CholeskyAnalysis analysis, bool interior,
                                                    const SetupLimits& limits) {
   limits.require_memory(analysis.factor_bytes(), "the sparse factor");
   SparseCholesky read;
-  if (!in.expect(analysis.order_hash(), ReadFailure::unfit)) return read;
+  if (!in.expect(analysis.order_hash(), detail::ReadFailure::unfit)) return read;
   auto made = allocate(analysis, interior);
   in.array(std::span<double>(made->values.data(), static_cast<std::size_t>(made->stored())));
   read.adopt(std::move(made), std::move(analysis));
@@ -125,7 +127,7 @@ PALPATE_INLINE Index SparseCholesky::size() const noexcept {
 PALPATE_INLINE Index SparseCholesky::kept() const noexcept {
   return factor_ ? factor_->kept : 0;
 }
-PALPATE_INLINE const CholeskyAnalysis& SparseCholesky::analysis() const noexcept {
+PALPATE_INLINE const detail::CholeskyAnalysis& SparseCholesky::analysis() const noexcept {
   return factor_->analysis;
 }
 PALPATE_INLINE Index SparseCholesky::factor_nonzeros() const noexcept {
@@ -173,7 +175,7 @@ PALPATE_INLINE void SparseCholesky::extend_into(const VectorX& kept_answer, Vect
   recover_into(kept_answer, x);
 }
 
-PALPATE_INLINE ReducedUnits SparseCholesky::reduce_units(std::span<const Index> dofs) const {
+PALPATE_INLINE detail::ReducedUnits SparseCholesky::reduce_units(std::span<const Index> dofs) const {
   return detail::reduce_units(factor_->tree(), factor_->values.data(), factor_->fronts, dofs, factor_->analysis.kept());
 }
 

@@ -6,7 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Spatial gradients of the shape functions at one quadrature point, and the volume that the point represents.
 template <Element E>
@@ -69,4 +69,4 @@ bool is_positively_oriented(const ElementNodes<E>& x) noexcept {
   return true;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

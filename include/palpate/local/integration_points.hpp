@@ -12,7 +12,7 @@
 
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A point of the element's rule. For elements with mean dilatation (element/wrappers.hpp) also the mean over
 /// the element of the gradients, from which the change of volume is computed.
@@ -104,4 +104,4 @@ StrainBlock strain_block(const IntegrationPoint<E>& point, int a) noexcept {
   return b;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The two constants of an isotropic material [Pa].
 struct LameConstants {
@@ -101,4 +101,4 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const LameConsta
   return k;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,7 +9,7 @@
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/integration_points.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Integral of every shape function over the element [m^3]. Times a body force it is the load f_l (3.44), times density
 /// the row-sum mass.
@@ -84,4 +84,4 @@ ElementNodes<E> initial_strain_load(const ElementNodes<E>& x, const Matrix6& d, 
   return f;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/local/geometry.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// One number per pair of nodes: the three components of a node are not coupled.
 template <Element E>
@@ -43,4 +43,4 @@ Eigen::Matrix<double, E::nodes, 1> lumped_element_mass(const ElementNodes<E>& x)
   return lumped;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/local/integration_points.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Stiffness matrix of an element, node-major (x y z per node).
 template <Element E>
@@ -29,4 +29,4 @@ ElementStiffness<E> element_stiffness(const ElementNodes<E>& x, const Matrix6& d
   return k;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -7,12 +7,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Strain, or stress, per displacement of one node: one column per component.
 using StrainBlock = Eigen::Matrix<double, 6, 3>;
 
+}  // namespace detail
+
 /// The 6 x 3 block B_a of the strain-displacement matrix for a node with spatial gradient g [1/m] (thesis 3.16, 3.20):
 /// strain = sum B_a u_a, Voigt order of core/voigt.hpp.
-inline StrainBlock strain_displacement(const Vector3& g) noexcept {
+inline detail::StrainBlock strain_displacement(const Vector3& g) noexcept {
   return detail::matrix_of_rows<6, 3>({{g[0], 0, 0},       // xx
                                        {0, g[1], 0},       // yy
                                        {0, 0, g[2]},       // zz
@@ -20,6 +24,8 @@ inline StrainBlock strain_displacement(const Vector3& g) noexcept {
                                        {g[2], 0, g[0]},    // xz
                                        {0, g[2], g[1]}});  // yz
 }
+
+namespace detail {
 
 /// volume * D B: stress per displacement of a node, times volume.
 inline StrainBlock stress_block(double volume, const Matrix6& d, const StrainBlock& b) noexcept {
@@ -43,6 +49,8 @@ inline Matrix3 force_block(const StrainBlock& b, const StrainBlock& s) noexcept 
     }
   return f;
 }
+
+}  // namespace detail
 
 /// Strain of a displacement field given by nodal values u (nodes x 3 [m]) and spatial gradients (nodes x 3 [1/m]).
 template <class Displacements, class Gradients>

@@ -97,8 +97,8 @@ struct FibreReinforced {
 
  private:
   template <class S>
-  PALPATE_ALWAYS_INLINE static scalar_of<S> constant(double x) noexcept {
-    return static_cast<scalar_of<S>>(x);
+  PALPATE_ALWAYS_INLINE static detail::scalar_of<S> constant(double x) noexcept {
+    return static_cast<detail::scalar_of<S>>(x);
   }
   template <class S>
   PALPATE_ALWAYS_INLINE Triple<S> own() const noexcept {

@@ -70,8 +70,8 @@ struct MooneyRivlin {
 
  private:
   template <class S>
-  PALPATE_ALWAYS_INLINE static scalar_of<S> constant(double x) noexcept {
-    return static_cast<scalar_of<S>>(x);
+  PALPATE_ALWAYS_INLINE static detail::scalar_of<S> constant(double x) noexcept {
+    return static_cast<detail::scalar_of<S>>(x);
   }
 };
 

@@ -139,8 +139,8 @@ struct NeoHookeanIsochoric {
 
  private:
   template <class S>
-  PALPATE_ALWAYS_INLINE static constexpr scalar_of<S> third(int count) noexcept {
-    return static_cast<scalar_of<S>>(count) / 3;
+  PALPATE_ALWAYS_INLINE static constexpr detail::scalar_of<S> third(int count) noexcept {
+    return static_cast<detail::scalar_of<S>>(count) / 3;
   }
 };
 

@@ -52,6 +52,8 @@ struct StressHistory {
   }
 };
 
+namespace detail {
+
 /// Coefficients of a series over a step dt: S = share S0' + sum (decay_i h_i - gain_i S0), h_i' = decay_i h_i + gain_i
 /// (S0' - S0), where S0 is the stress of the base at the start and S0' at the end.
 template <int Terms>
@@ -59,8 +61,6 @@ struct PronyStep {
   double share = 1.0;  ///< dS / dS0' [-]
   std::array<double, Terms> decay{}, gain{};
 };
-
-namespace detail {
 
 /// The stress of a material under a pure change of volume: U(J) = W(J^(1/3) I), for J > 0.
 template <class Base>
@@ -156,8 +156,8 @@ struct Viscoelastic {
     return left;
   }
   /// Its share is the factor for the tangent of the base (for its deviatoric part only, with deviatoric relaxation).
-  PronyStep<Terms> over(double dt) const noexcept {
-    PronyStep<Terms> step;
+  detail::PronyStep<Terms> over(double dt) const noexcept {
+    detail::PronyStep<Terms> step;
     step.share = long_term_share();
     for (std::size_t i = 0; i < terms.size(); ++i) {
       const double x = dt / terms[i].relaxation_time;
@@ -189,20 +189,21 @@ struct Viscoelastic {
   // The same in separate functions, for bodies: within a step the material is hyperelastic.
 
   /// The part of S [Pa] at the end of the step that comes from the history before the step.
-  static Tensor3<double> driving_stress(const LargeStrainHistory& history, const PronyStep<Terms>& step) noexcept {
+  static Tensor3<double> driving_stress(const LargeStrainHistory& history,
+                                        const detail::PronyStep<Terms>& step) noexcept {
     Tensor3<double> sum{};
     for (std::size_t i = 0; i < step.decay.size(); ++i)
       sum = sum + (step.decay[i] * history.fading[i] - step.gain[i] * history.elastic);
     return sum;
   }
   /// The hyperelastic material of the step. Refers to this material.
-  ViscousStep<Base> material_of_step(
-      const PronyStep<Terms>& step, const Tensor3<double>& driving) const noexcept requires HyperelasticMaterial<Base> {
+  ViscousStep<Base> material_of_step(const detail::PronyStep<Terms>& step, const Tensor3<double>& driving)
+      const noexcept requires HyperelasticMaterial<Base> {
     return {base, step.share, relaxation == Relaxation::deviatoric ? 1.0 - step.share : 0.0, driving};
   }
   /// Advances the history over a step that ends at F.
   void update_history(const Tensor3<double>& f, LargeStrainHistory& history,
-                      const PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
+                      const detail::PronyStep<Terms>& step) const noexcept requires HyperelasticMaterial<Base> {
     Tensor3<double> p = base.stress(f);
     if (relaxation == Relaxation::deviatoric) p = p - detail::VolumeStress<Base>(base, f).stress();
     const Tensor3<double> c = cofactor(f);
@@ -231,7 +232,7 @@ struct Viscoelastic {
  private:
   template <class Stress>
   Stress advance(const Stress& elastic, StressHistory<Stress, Terms>& history,
-                 const PronyStep<Terms>& step) const noexcept {
+                 const detail::PronyStep<Terms>& step) const noexcept {
     const Stress change = elastic - history.elastic;
     Stress total = long_term_share() * elastic;
     for (std::size_t i = 0; i < terms.size(); ++i) {

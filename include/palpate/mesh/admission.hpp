@@ -21,6 +21,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Mutable references to the arrays of an owning mesh of any element type. The number of elements can decrease: the
 /// owner of `connectivity` shortens it afterwards.
 struct MeshEdit {
@@ -35,7 +37,7 @@ struct MeshEdit {
 
   NodeId* nodes_of(Index e) const noexcept { return connectivity + e * element.nodes; }
   MeshRef ref() const noexcept {
-    return {element,      static_cast<Index>(positions.size()),       element_count, detail::flat(positions),
+    return {element,      static_cast<Index>(positions.size()),       element_count, flat(positions),
             connectivity, regions.empty() ? nullptr : regions.data(), region_names,  groups.all()};
   }
 };
@@ -87,6 +89,8 @@ void reorient(Mesh<E>& mesh, const std::vector<Index>& elements) {
   reorient(edit, elements);
 }
 
+}  // namespace detail
+
 /// A mesh that passed admission. The maps give, for every id of the mesh as given, the id in this mesh; -1 means
 /// dropped, welded nodes share an id.
 template <Element E>
@@ -98,6 +102,8 @@ struct Admitted {
   MeshDiagnosis admitted;   ///< of `mesh`; the same when nothing was repaired
 };
 
+namespace detail {
+
 /// The inverse of the maps of an admission. Welded nodes get the lowest of their original ids. O(n), allocates.
 OriginalIds original_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map);
 template <Element E>
@@ -105,10 +111,8 @@ OriginalIds original_ids(const Admitted<E>& admitted) {
   return original_ids(admitted.node_map, admitted.element_map);
 }
 
-namespace detail {
-
 /// A mesh during admission. `repair_and_enforce` fills the maps.
-struct Candidate {
+struct CandidateMesh {
   MeshEdit mesh;
   ShapeOfElement shape_of;
   std::vector<NodeId>& node_map;
@@ -120,7 +124,7 @@ struct Candidate {
 void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy);
 
 /// Checks the groups, makes all repairs that the policy allows and refuses the remaining defects.
-void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy);
+void repair_and_enforce(CandidateMesh& candidate, const AdmissionPolicy& policy);
 
 }  // namespace detail
 
@@ -137,10 +141,10 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   result.diagnosis = diagnose<E>(view, policy.thresholds);
   result.admitted = result.diagnosis;
   if (!result.diagnosis.complete) detail::enforce(result.admitted, policy);  // refuses
-  require_unit_fibres(view);
+  detail::require_unit_fibres(view);
   result.mesh = copy_mesh<E>(view, group_names);
-  detail::Candidate candidate{mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map, result.element_map,
-                              result.admitted};
+  detail::CandidateMesh candidate{detail::mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map,
+                                  result.element_map, result.admitted};
   detail::repair_and_enforce(candidate, policy);
   result.mesh.elements.resize(static_cast<std::size_t>(candidate.mesh.element_count));
   return result;

@@ -13,9 +13,7 @@
 #include <set>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Renumbers a group's nodes and faces. A face that lost a node, has two equal nodes, or repeats an earlier face is
 /// dropped.
@@ -38,8 +36,6 @@ inline void renumber_group(Group& group, const std::vector<NodeId>& map) {
   group.faces = std::move(faces);
 }
 
-}  // namespace detail
-
 PALPATE_INLINE void renumber_nodes(MeshEdit& mesh, const std::vector<NodeId>& map) {
   std::vector<Vector3> positions;
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -51,7 +47,7 @@ PALPATE_INLINE void renumber_nodes(MeshEdit& mesh, const std::vector<NodeId>& ma
   mesh.positions = std::move(positions);
   NodeId* const end = mesh.nodes_of(mesh.element_count);
   for (NodeId* node = mesh.connectivity; node != end; ++node) *node = map[static_cast<std::size_t>(*node)];
-  for (Group& group : mesh.groups.all()) detail::renumber_group(group, map);
+  for (Group& group : mesh.groups.all()) renumber_group(group, map);
 }
 
 PALPATE_INLINE void renumber_elements(MeshEdit& mesh, const std::vector<Index>& map) {
@@ -103,8 +99,6 @@ PALPATE_INLINE void reorient(MeshEdit& mesh, const std::vector<Index>& elements)
   }
 }
 
-namespace detail {
-
 /// The inverse map; empty if nothing was renumbered.
 template <class Id>
 std::vector<std::int64_t> inverse_of(const std::vector<Id>& map) {
@@ -148,14 +142,14 @@ inline void require_valid_groups(const MeshRef& mesh) {
   }
 }
 
-inline void apply_node_map(Candidate& work, const std::vector<NodeId>& map) {
+inline void apply_node_map(CandidateMesh& work, const std::vector<NodeId>& map) {
   renumber_nodes(work.mesh, map);
   for (NodeId& i : work.node_map)
     if (i >= 0) i = map[static_cast<std::size_t>(i)];
 }
 
 /// Welds coincident nodes. Returns whether there were any.
-inline bool weld(Candidate& work, const MeshThresholds& thresholds) {
+inline bool weld(CandidateMesh& work, const MeshThresholds& thresholds) {
   const CoincidentNodes coincident = coincident_nodes(work.mesh.ref(), thresholds.coincidence);
   std::vector<NodeId> map(coincident.representative.size());
   NodeId next = 0;
@@ -169,19 +163,19 @@ inline bool weld(Candidate& work, const MeshThresholds& thresholds) {
 }
 
 /// -1 inverted, 0 flat, 1 sound.
-inline int orientation_of(const Candidate& work, Index e, const MeshThresholds& thresholds) noexcept {
+inline int orientation_of(const CandidateMesh& work, Index e, const MeshThresholds& thresholds) noexcept {
   return orientation(work.shape_of(flat(work.mesh.positions), work.mesh.nodes_of(e)), thresholds);
 }
 
 /// `map`: the new number of every element, -1 for those to drop.
-inline void apply_element_map(Candidate& work, const std::vector<Index>& map) {
+inline void apply_element_map(CandidateMesh& work, const std::vector<Index>& map) {
   renumber_elements(work.mesh, map);
   for (Index& e : work.element_map)
     if (e >= 0) e = map[static_cast<std::size_t>(e)];
 }
 
 /// Drops flat and repeated elements if the policy requires it. Returns whether there were any.
-inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
+inline bool drop_elements(CandidateMesh& work, const AdmissionPolicy& policy) {
   if (policy.duplicate_elements != Admission::repair && policy.degenerate != Admission::repair) return false;
   const std::vector<Index> first = first_equal_elements(work.mesh.ref());
   std::vector<Index> map(first.size());
@@ -197,7 +191,7 @@ inline bool drop_elements(Candidate& work, const AdmissionPolicy& policy) {
 }
 
 /// Drops the elements of all pieces but the one of most elements. Returns whether there were any.
-inline bool keep_largest_piece(Candidate& work) {
+inline bool keep_largest_piece(CandidateMesh& work) {
   const MeshComponents components = connected_components(work.mesh.ref());
   if (components.count < 2) return false;
   const auto piece_of = [&](Index e) {
@@ -215,7 +209,7 @@ inline bool keep_largest_piece(Candidate& work) {
 }
 
 /// Reverses the orientation of inverted elements. Returns whether there were any.
-inline bool reverse_inverted(Candidate& work, const MeshThresholds& thresholds) {
+inline bool reverse_inverted(CandidateMesh& work, const MeshThresholds& thresholds) {
   std::vector<Index> inverted;
   for (Index e = 0; e < work.mesh.element_count; ++e)
     if (orientation_of(work, e, thresholds) < 0) inverted.push_back(e);
@@ -224,7 +218,7 @@ inline bool reverse_inverted(Candidate& work, const MeshThresholds& thresholds) 
 }
 
 /// Drops nodes that no element uses, also those left over by other repairs. Returns whether there were any.
-inline bool drop_orphans(Candidate& work) {
+inline bool drop_orphans(CandidateMesh& work) {
   const std::vector<char> used = used_nodes(work.mesh.ref());
   std::vector<NodeId> map(used.size(), -1);
   NodeId next = 0;
@@ -237,7 +231,7 @@ inline bool drop_orphans(Candidate& work) {
 
 /// Makes all repairs that the policy allows, ordered so that each also handles the results of the previous ones.
 /// Returns whether anything was changed.
-inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
+inline bool repair(CandidateMesh& work, const AdmissionPolicy& policy) {
   bool changed = false;
   if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;
   changed = drop_elements(work, policy) || changed;
@@ -247,7 +241,7 @@ inline bool repair(Candidate& work, const AdmissionPolicy& policy) {
   return changed;
 }
 
-PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPolicy& policy) {
+PALPATE_INLINE void repair_and_enforce(CandidateMesh& candidate, const AdmissionPolicy& policy) {
   require_valid_groups(candidate.mesh.ref());
   candidate.node_map.resize(candidate.mesh.positions.size());
   candidate.element_map.resize(static_cast<std::size_t>(candidate.mesh.element_count));
@@ -264,10 +258,8 @@ PALPATE_INLINE void repair_and_enforce(Candidate& candidate, const AdmissionPoli
   enforce(candidate.admitted, policy);
 }
 
-}  // namespace detail
-
 PALPATE_INLINE OriginalIds original_ids(const std::vector<NodeId>& node_map, const std::vector<Index>& element_map) {
-  return {detail::inverse_of(node_map), detail::inverse_of(element_map)};
+  return {inverse_of(node_map), inverse_of(element_map)};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -8,7 +8,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// Pointers to a mesh with another owner, which must outlive this object. Cheap to copy.
 struct MeshRef {
-  ElementLayout element;
+  detail::ElementLayout element;
   Index node_count = 0, element_count = 0;
   const double* positions = nullptr;     ///< x y z of every node [m]
   const NodeId* connectivity = nullptr;  ///< element.nodes ids per element, in the order of its reference nodes
@@ -21,6 +21,8 @@ struct MeshRef {
   int region(Index e) const noexcept { return regions == nullptr ? 0 : regions[e]; }
 };
 
+namespace detail {
+
 /// A mesh that owns its arrays, as Mesh does, for code that creates meshes of any element type.
 struct PlainMesh {
   std::vector<Vector3> positions;    ///< [m]
@@ -30,8 +32,6 @@ struct PlainMesh {
   GroupTable groups;
   std::vector<std::string> notes{};  ///< see Mesh::notes
 };
-
-namespace detail {
 
 inline const double* flat(const std::vector<Vector3>& positions) noexcept {
   static_assert(sizeof(Vector3) == 3 * sizeof(double));
@@ -63,8 +63,8 @@ MeshRef mesh_ref(const Mesh<E>& mesh) noexcept {
 
 /// The same for a PlainMesh.
 template <Element E>
-MeshRef mesh_ref(const PlainMesh& mesh) noexcept {
-  return {element_layout<E>,
+MeshRef mesh_ref(const detail::PlainMesh& mesh) noexcept {
+  return {detail::element_layout<E>,
           static_cast<Index>(mesh.positions.size()),
           static_cast<Index>(mesh.connectivity.size()) / E::nodes,
           detail::flat(mesh.positions),
@@ -76,7 +76,7 @@ MeshRef mesh_ref(const PlainMesh& mesh) noexcept {
 
 /// Converts the arrays to a mesh of elements E. All are moved except the connectivity, which is copied.
 template <Element E>
-Mesh<E> to_mesh(PlainMesh&& plain) {
+Mesh<E> to_mesh(detail::PlainMesh&& plain) {
   Mesh<E> mesh;
   mesh.positions = std::move(plain.positions);
   mesh.elements.resize(plain.connectivity.size() / static_cast<std::size_t>(E::nodes));
@@ -89,6 +89,8 @@ Mesh<E> to_mesh(PlainMesh&& plain) {
   mesh.notes = std::move(plain.notes);
   return mesh;
 }
+
+namespace detail {
 
 /// Positions, connectivity and regions of any mesh, copied.
 template <Element E, MeshOf<E> M>
@@ -104,8 +106,6 @@ PlainMesh plain_copy(const M& mesh) {
   }
   return plain;
 }
-
-namespace detail {
 
 /// A mesh of any type as a MeshRef, with a copy of the arrays if the mesh is not a Mesh.
 struct PlainView {

@@ -64,14 +64,12 @@ Matrix3 jacobian(const double (&edges)[E::nodes][3], const Eigen::Matrix<double,
   return J;
 }
 
-}  // namespace detail
-
 /// Largest distance between two nodes of an element [m].
 template <Element E>
 double longest_edge(const ElementNodes<E>& nodes) noexcept {
   double square = 0.0;
   for (int a = 0; a < E::nodes; ++a)
-    for (int b = a + 1; b < E::nodes; ++b) square = std::max(square, detail::squared_distance<E>(nodes, a, b));
+    for (int b = a + 1; b < E::nodes; ++b) square = std::max(square, squared_distance<E>(nodes, a, b));
   return std::sqrt(square);
 }
 
@@ -82,10 +80,12 @@ double shortest_edge(const Mesh<E>& mesh) noexcept {
   for (Index e = 0; e < mesh.element_count(); ++e) {
     const ElementNodes<E> nodes = element_nodes<E>(mesh, e);
     for (int a = 0; a < E::nodes; ++a)
-      for (int b = a + 1; b < E::nodes; ++b) square = std::min(square, detail::squared_distance<E>(nodes, a, b));
+      for (int b = a + 1; b < E::nodes; ++b) square = std::min(square, squared_distance<E>(nodes, a, b));
   }
   return std::sqrt(square);
 }
+
+}  // namespace detail
 
 /// Shape of the element with these node coordinates [m], one per row. The quality is the mean ratio 3 det(A)^(2/3) /
 /// |A|^2 of the map A from the ideal element, for Tet4 equal to 12 (3V)^(2/3) / (sum of the six squared edges).
@@ -95,7 +95,7 @@ double shortest_edge(const Mesh<E>& mesh) noexcept {
 template <Element E>
 ElementShape element_shape(const ElementNodes<E>& nodes) noexcept {
   ElementShape shape;
-  shape.longest_edge = longest_edge<E>(nodes);
+  shape.longest_edge = detail::longest_edge<E>(nodes);
   if (!(shape.longest_edge > 0.0)) return shape;
   const double size = shape.longest_edge;
   double largest = 0.0, edges[E::nodes][3];

@@ -15,6 +15,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Wanted edge length [m] at a distance [m] from the targets: edge + growth * distance. Both positive and finite.
 struct WantedEdge {
   double edge = 0.0;
@@ -24,13 +26,15 @@ struct WantedEdge {
 /// Wanted edge length [m] at a point of the mesh as given [m]: positive, infinity where nothing is to be refined.
 using EdgeField = std::function<double(const Vector3&)>;
 
+}  // namespace detail
+
 struct RefineNearOptions {
   Index most_nodes = 1'000'000;  ///< refinement ends when the mesh has this number of nodes
   /// No element gets a quality below this fraction of the least quality in the mesh as given; 0 < fraction <= 1.
   double quality_kept = 0.5;
   /// New nodes on the boundary are moved onto this surface as far as the quality allows, and by at most half the length
   /// of the edge that they divide; nullptr: edges stay straight. Nodes of the mesh as given are not moved.
-  const CurvedSurface* surface = nullptr;
+  const detail::CurvedSurface* surface = nullptr;
 };
 
 /// What refine_near did. Quality is the mean ratio of mesh/quality.hpp.
@@ -62,16 +66,17 @@ struct RefineNearReport {
 /// or degenerate_element for elements without positive volume; unsupported for a group's face that no element has;
 /// if no report is asked for, too_large where `most_nodes` ended the refinement, and poor_quality where no division
 /// keeps the quality. O(elements) + O(new nodes), with a logarithm; allocates.
-Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets, const WantedEdge& wanted,
-                       const RefineNearOptions& options = {}, RefineNearReport* report = nullptr);
+Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets,
+                       const detail::WantedEdge& wanted, const RefineNearOptions& options = {},
+                       RefineNearReport* report = nullptr);
 
 /// The same near one target.
-Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target, const WantedEdge& wanted,
+Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target, const detail::WantedEdge& wanted,
                        const RefineNearOptions& options = {}, RefineNearReport* report = nullptr);
 
 /// The same for any wanted edge length, which is evaluated at the middle of edges. Throws bad_argument where the field
 /// returns NaN or a number that is not positive.
-Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& wanted, const RefineNearOptions& options = {},
+Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const detail::EdgeField& wanted, const RefineNearOptions& options = {},
                        RefineNearReport* report = nullptr);
 
 namespace detail {
@@ -84,7 +89,7 @@ inline constexpr bool is_bisected = std::same_as<E, Tet4>;
 /// Other elements are refused by the compiler.
 template <Element E>
 requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>&, const std::vector<RefineTarget>&,
-                                                      const WantedEdge&, const RefineNearOptions& = {},
+                                                      const detail::WantedEdge&, const RefineNearOptions& = {},
                                                       RefineNearReport* = nullptr) {
   static_assert(detail::is_bisected<E>,
                 "palpate: refine_near divides linear tetrahedra. Quadratic ones: refine the Mesh<Tet4>, then "
@@ -92,19 +97,24 @@ requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>&, const std:
 }
 template <Element E>
 requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>& mesh, const RefineTarget& target,
-                                                      const WantedEdge& wanted, const RefineNearOptions& options = {},
+                                                      const detail::WantedEdge& wanted,
+                                                      const RefineNearOptions& options = {},
                                                       RefineNearReport* report = nullptr) {
   return refine_near(mesh, std::vector<RefineTarget>{target}, wanted, options, report);
 }
 template <Element E>
-requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>& mesh, const EdgeField&,
+requires(!detail::is_bisected<E>) Mesh<E> refine_near(const Mesh<E>& mesh, const detail::EdgeField&,
                                                       const RefineNearOptions& options = {},
                                                       RefineNearReport* report = nullptr) {
   return refine_near(mesh, std::vector<RefineTarget>{}, {}, options, report);
 }
 
+namespace detail {
+
 /// Whether a scene selects anything by a list of nodes. Refinement adds nodes to groups, not to lists.
 bool lists_nodes(const Scene& scene);
+
+}  // namespace detail
 
 /// Replaces the listed nodes of a scene by new groups of the mesh, "listed nodes 1" and so on, and returns that scene.
 /// They contain the boundary faces all of whose nodes are listed, and with a node inside the body the elements, too:

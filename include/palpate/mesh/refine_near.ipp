@@ -171,8 +171,8 @@ inline Mesh<Tet4> refine_checked(const Mesh<Tet4>& mesh, const MeshQuality& befo
 
 }  // namespace detail
 
-PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& wanted, const RefineNearOptions& options,
-                                      RefineNearReport* report) {
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const detail::EdgeField& wanted,
+                                      const RefineNearOptions& options, RefineNearReport* report) {
   if (!wanted) raise(SetupErrorKind::bad_argument, "an empty function as wanted edge length");
   detail::check_options(options);
   const auto before = detail::checked_quality(mesh);
@@ -187,7 +187,7 @@ PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const EdgeField& w
 }
 
 PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<RefineTarget>& targets,
-                                      const WantedEdge& wanted, const RefineNearOptions& options,
+                                      const detail::WantedEdge& wanted, const RefineNearOptions& options,
                                       RefineNearReport* report) {
   detail::check_wanted(wanted);
   detail::check_options(options);
@@ -202,8 +202,9 @@ PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const std::vector<
   return detail::refine_checked(mesh, before, wanted_at, options, report);
 }
 
-PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target, const WantedEdge& wanted,
-                                      const RefineNearOptions& options, RefineNearReport* report) {
+PALPATE_INLINE Mesh<Tet4> refine_near(const Mesh<Tet4>& mesh, const RefineTarget& target,
+                                      const detail::WantedEdge& wanted, const RefineNearOptions& options,
+                                      RefineNearReport* report) {
   return refine_near(mesh, std::vector<RefineTarget>{target}, wanted, options, report);
 }
 
@@ -260,8 +261,6 @@ inline void fill_group(Group& group, const std::vector<NodeId>& nodes, const Mes
     if (all_in(mesh.elements[static_cast<std::size_t>(e)])) group.elements.push_back(e);
 }
 
-}  // namespace detail
-
 PALPATE_INLINE bool lists_nodes(const Scene& scene) {
   bool found = false;
   scene.with_selections([&found](const Selection& selection) {
@@ -271,8 +270,10 @@ PALPATE_INLINE bool lists_nodes(const Scene& scene) {
   return found;
 }
 
+}  // namespace detail
+
 PALPATE_INLINE Scene name_listed_nodes(Mesh<Tet4>& mesh, const Scene& scene) {
-  if (!lists_nodes(scene)) return scene;
+  if (!detail::lists_nodes(scene)) return scene;
   int lists = 0;
   const std::vector<BoundaryFace> boundary = extract_boundary<Tet4>(mesh);
   Scene named = scene.with_selections([&](const Selection& selection) -> Selection {
@@ -295,7 +296,7 @@ PALPATE_INLINE Scene name_listed_nodes(Mesh<Tet4>& mesh, const Scene& scene) {
 PALPATE_INLINE Mesh<Tet4> refine_near_touched(const Mesh<Tet4>& mesh, const Scene& scene, double edge,
                                               const RefineNearOptions& options, RefineNearReport* report) {
   constexpr double growth = 0.5;
-  if (lists_nodes(scene))
+  if (detail::lists_nodes(scene))
     raise(SetupErrorKind::unsupported, "the scene selects by lists of nodes, which new nodes are not in",
           "Name a group of the mesh, give a set of points such as where::box, or call name_listed_nodes first");
   if (!(edge > 0.0 && edge < infinity))

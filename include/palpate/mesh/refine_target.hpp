@@ -29,10 +29,14 @@ struct Polyline {
 /// complement is that to the nodes that it selects.
 using RefineTarget = std::variant<std::string, std::vector<NodeId>, where::PointSet, PointCloud, Polyline>;
 
+namespace detail {
+
 /// A triangle surface that is finer than the boundary of the mesh, in the same frame [m].
 struct CurvedSurface {
   std::vector<Vector3> positions;
   std::vector<std::array<NodeId, 3>> triangles;
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -149,8 +149,12 @@ class Scene {
   bool is_pinched_ = false;
 };
 
+namespace detail {
+
 /// Text that lists all loads, with gravity [m/s^2]: "gravity of 9.81 m/s^2, 2 pressures".
 std::string loads_in_words(const Vector3& gravity, const std::string& others);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

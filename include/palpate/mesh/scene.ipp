@@ -139,10 +139,14 @@ PALPATE_INLINE std::string Scene::loads_in_words() const {
   return words;
 }
 
+namespace detail {
+
 PALPATE_INLINE std::string loads_in_words(const Vector3& gravity, const std::string& others) {
   if (gravity.isZero(0.0)) return others.empty() ? "none" : others;
   return "gravity of " + number(gravity.norm()) + " m/s^2" + (others.empty() ? "" : ", " + others);
 }
+
+}  // namespace detail
 
 PALPATE_INLINE std::vector<std::string> Scene::group_names() const {
   std::vector<std::string> names;

@@ -14,6 +14,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Name of a selection for messages.
 std::string selection_name(const Selection& s);
 
@@ -21,6 +23,8 @@ std::string selection_name(const Selection& s);
 /// of the mesh's bounding box, so that the selection of a node on the boundary does not depend on rounding or on the
 /// digits of a file.
 double point_margin(const MeshRef& mesh);
+
+}  // namespace detail
 
 /// The nodes in a set of points, inside the body and on its surface, ascending; an empty result is not an error.
 /// O(nodes).
@@ -36,6 +40,8 @@ std::vector<Index> elements_within(const MeshRef& mesh, const where::PointSet& p
 std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                   const Selection& selection);
 
+namespace detail {
+
 /// The boundary faces of a selection, outward for any order in the mesh file. A group that lists faces selects exactly
 /// those; any other selection selects every boundary face all of whose nodes it contains. Throws empty_group, or
 /// unsupported for a face inside the body.
@@ -45,12 +51,16 @@ std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, const std::vector<B
 /// Refuses the name of a region that does not exist (unknown_group); `everywhere` always exists.
 void require_region(const MeshRef& mesh, const std::string& name);
 
+}  // namespace detail
+
 /// The same for a mesh of elements E.
 template <Element E>
 std::vector<NodeId> resolve_nodes(const Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary,
                                   const Selection& selection) {
   return resolve_nodes(mesh_ref(mesh), boundary, selection);
 }
+namespace detail {
+
 template <Element E>
 std::vector<BoundaryFace> resolve_faces(const Mesh<E>& mesh, const std::vector<BoundaryFace>& boundary,
                                         const Selection& selection) {
@@ -60,6 +70,8 @@ template <Element E>
 void require_region(const Mesh<E>& mesh, const std::string& name) {
   require_region(mesh_ref(mesh), name);
 }
+
+}  // namespace detail
 template <Element E>
 std::vector<NodeId> nodes_within(const Mesh<E>& mesh, const where::PointSet& points) {
   return nodes_within(mesh_ref(mesh), points);

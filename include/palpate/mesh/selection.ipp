@@ -12,13 +12,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 PALPATE_INLINE std::string selection_name(const Selection& s) {
   if (const auto* name = std::get_if<std::string>(&s)) return "'" + *name + "'";
   if (const auto* points = std::get_if<where::PointSet>(&s)) return points->name();
   return "a list of " + std::to_string(std::get<std::vector<NodeId>>(s).size()) + " nodes";
 }
-
-namespace detail {
 
 inline const Group* find_group(const MeshRef& mesh, const std::string& name) noexcept {
   const auto it = std::ranges::find(mesh.groups, name, &Group::name);
@@ -97,14 +97,14 @@ inline std::vector<NodeId> listed_nodes(const MeshRef& mesh, const std::vector<B
   return named_nodes(mesh, boundary, std::get<std::string>(selection));
 }
 
-}  // namespace detail
-
 PALPATE_INLINE double point_margin(const MeshRef& mesh) {
-  return mesh.node_count == 0 ? 0.0 : 1e-6 * detail::box_of(mesh).size().norm();
+  return mesh.node_count == 0 ? 0.0 : 1e-6 * box_of(mesh).size().norm();
 }
 
+}  // namespace detail
+
 PALPATE_INLINE std::vector<NodeId> nodes_within(const MeshRef& mesh, const where::PointSet& points) {
-  const double margin = point_margin(mesh);
+  const double margin = detail::point_margin(mesh);
   std::vector<NodeId> nodes;
   for (Index i = 0; i < mesh.node_count; ++i)
     if (points.contains(detail::position_of(mesh, i), margin)) nodes.push_back(static_cast<NodeId>(i));
@@ -112,7 +112,7 @@ PALPATE_INLINE std::vector<NodeId> nodes_within(const MeshRef& mesh, const where
 }
 
 PALPATE_INLINE std::vector<Index> elements_within(const MeshRef& mesh, const where::PointSet& points) {
-  const double margin = point_margin(mesh);
+  const double margin = detail::point_margin(mesh);
   std::vector<Index> elements;
   for (Index e = 0; e < mesh.element_count; ++e) {
     Vector3 centre = Vector3::Zero();
@@ -128,21 +128,23 @@ PALPATE_INLINE std::vector<NodeId> resolve_nodes(const MeshRef& mesh, const std:
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.empty())
-    raise(SetupErrorKind::empty_group, selection_name(selection) + " contains no node",
+    raise(SetupErrorKind::empty_group, detail::selection_name(selection) + " contains no node",
           detail::extent_hint(mesh, selection));
   if (nodes.front() < 0 || nodes.back() >= mesh.node_count)
     raise(SetupErrorKind::index_out_of_range,
-          selection_name(selection) + " names a node outside 0 ... " + std::to_string(mesh.node_count - 1));
+          detail::selection_name(selection) + " names a node outside 0 ... " + std::to_string(mesh.node_count - 1));
   return nodes;
 }
+
+namespace detail {
 
 PALPATE_INLINE std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                                        const Selection& selection) {
   std::vector<BoundaryFace> faces;
   const auto* name = std::get_if<std::string>(&selection);
-  const Group* group = name != nullptr ? detail::find_group(mesh, *name) : nullptr;
+  const Group* group = name != nullptr ? find_group(mesh, *name) : nullptr;
   if (group != nullptr && !group->faces.empty()) {
-    faces = detail::listed_faces(mesh, boundary, *group);
+    faces = listed_faces(mesh, boundary, *group);
   } else {
     std::vector<char> chosen(static_cast<std::size_t>(mesh.node_count), 0);
     for (NodeId i : resolve_nodes(mesh, boundary, selection)) chosen[static_cast<std::size_t>(i)] = 1;
@@ -150,10 +152,10 @@ PALPATE_INLINE std::vector<BoundaryFace> resolve_faces(const MeshRef& mesh, cons
       if (std::ranges::all_of(f.nodes, [&](NodeId i) { return chosen[static_cast<std::size_t>(i)] != 0; }))
         faces.push_back(f);
   }
-  faces = detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
+  faces = sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
   if (faces.empty())
     raise(SetupErrorKind::empty_group, selection_name(selection) + " contains no boundary face",
-          detail::extent_hint(mesh, selection));
+          extent_hint(mesh, selection));
   return faces;
 }
 
@@ -161,5 +163,7 @@ PALPATE_INLINE void require_region(const MeshRef& mesh, const std::string& name)
   if (name != everywhere && std::ranges::find(mesh.region_names, name) == mesh.region_names.end())
     raise(SetupErrorKind::unknown_group, "the mesh has no region '" + name + "'");
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -13,12 +13,16 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Largest number of nodes of an element face: quadrilaterals of degree 3 have 16.
 inline constexpr int max_face_nodes = 16;
 
+}  // namespace detail
+
 /// A face of the boundary: its nodes, outward by the right-hand rule, and the element it belongs to.
 struct BoundaryFace {
-  ShortIds<static_cast<std::size_t>(max_face_nodes)> nodes;
+  detail::ShortIds<static_cast<std::size_t>(detail::max_face_nodes)> nodes;
   Index element = 0;
 
   /// Sorted node ids: the same for every ordering of the face's nodes.
@@ -29,6 +33,8 @@ struct BoundaryFace {
   }
 };
 
+namespace detail {
+
 /// A face of an element with a key that is the same for all elements that share it.
 template <Element E>
 struct KeyedFace {
@@ -36,8 +42,6 @@ struct KeyedFace {
   int local = 0;
   Index element = 0;
 };
-
-namespace detail {
 
 /// All faces of all elements, equal keys adjacent and ordered by element.
 struct SortedFaces {
@@ -59,12 +63,10 @@ std::vector<NodeId> face_keys(const std::vector<BoundaryFace>& faces, int width)
 /// Faces in the order of their keys of at most `width` nodes, each once.
 std::vector<BoundaryFace> sort_unique(const std::vector<BoundaryFace>& faces, int width, Index node_count);
 
-}  // namespace detail
-
 /// All faces of all elements, equal keys adjacent and ordered by element. O(faces), allocates.
 template <Element E, MeshOf<E> M>
 std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
-  const detail::SortedFaces sorted = detail::sorted_faces(detail::plain_view<E>(mesh).mesh);
+  const SortedFaces sorted = sorted_faces(plain_view<E>(mesh).mesh);
   std::vector<KeyedFace<E>> faces;
   faces.reserve(sorted.order.size());
   for (Index i = 0; i < sorted.count(); ++i) {
@@ -75,6 +77,8 @@ std::vector<KeyedFace<E>> sorted_faces(const M& mesh) {
   return faces;
 }
 
+}  // namespace detail
+
 /// All faces that belong to exactly one element, ordered by element. Node order is that of the element, hence outward
 /// if the element is positively oriented. A face shared by three or more elements is refused as non_manifold. O(faces),
 /// allocates.
@@ -83,7 +87,7 @@ std::vector<BoundaryFace> extract_boundary(const MeshRef& mesh);
 /// The same for any mesh.
 template <Element E, MeshOf<E> M>
 std::vector<BoundaryFace> extract_boundary(const M& mesh) {
-  static_assert(E::Face::nodes <= max_face_nodes, "palpate: a face has at most 16 nodes");
+  static_assert(E::Face::nodes <= detail::max_face_nodes, "palpate: a face has at most 16 nodes");
   return extract_boundary(detail::plain_view<E>(mesh).mesh);
 }
 

@@ -16,6 +16,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Sizes, quality and findings of an admitted mesh.
 template <Element E>
 void report_admission(const Admitted<E>& admitted, SetupReport& report) {
@@ -65,6 +67,8 @@ void report_locking(const std::vector<Matrix6>& elasticity, SetupReport& report)
     }
 }
 
+}  // namespace detail
+
 /// What a set-up was given that has units. The elasticity matrices are those of the regions, or of elements.
 struct UnitCheck {
   std::span<const std::string> region_names;
@@ -73,6 +77,8 @@ struct UnitCheck {
   double gravity = 0.0;                   ///< [m/s^2]
   double touch_radius = 0.0;              ///< [m]
 };
+
+namespace detail {
 
 /// Flags values that look like other units than SI, in addition to those that the flag has already: a material softer
 /// than 100 Pa, a body of which no material is softer than 0.1 GPa, a density outside 50 to 25 000 kg/m^3 (0: not
@@ -94,6 +100,8 @@ double displacement_spread(std::span<const Vector3> displacements) noexcept;
 /// criterion is the largest difference between the displacement of a node and the mean, relative to the diagonal of the
 /// bounding box.
 void report_displacement(const std::vector<Vector3>& positions, const VectorX& u, SetupReport& report);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

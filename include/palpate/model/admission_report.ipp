@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Collects findings on units, or refuses the first one.
 class UnitFindings {
@@ -43,16 +41,14 @@ inline double youngs_modulus(const Matrix6& d) noexcept {
   return 2.0 * shear * (1.0 + equivalent_poisson_ratio(d));
 }
 
-}  // namespace detail
-
 PALPATE_INLINE void report_units(const UnitCheck& given, bool refuse, SetupReport& report) {
   constexpr double softest = 100.0, stiff = 1e8, lightest = 50.0, densest = 25e3, strongest = 100.0, largest = 1.0;
-  detail::UnitFindings found(refuse);
+  UnitFindings found(refuse);
   const auto region = [&](std::size_t r) { return "region '" + given.region_names[r] + "'"; };
   const bool by_region = given.elasticities.size() == given.region_names.size();
   double least = infinity;
   for (std::size_t m = 0; m < given.elasticities.size(); ++m) {
-    const double modulus = detail::youngs_modulus(given.elasticities[m]);
+    const double modulus = youngs_modulus(given.elasticities[m]);
     found.check(modulus, softest, infinity,
                 (by_region ? region(m) : std::string("an element")) + " has a Young's modulus of", " Pa: kPa or MPa?",
                 by_region ? static_cast<int>(m) : -1);
@@ -108,4 +104,4 @@ PALPATE_INLINE void report_displacement(const std::vector<Vector3>& positions, c
                                                   " of the body's diagonal: too far for linear elasticity");
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

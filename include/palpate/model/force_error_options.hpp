@@ -9,13 +9,17 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class ForceAccuracy;
 class TissueView;
+namespace detail {
+
 struct ForceErrorSource;
+
+}  // namespace detail
 struct MeshRef;
 struct SetupLimits;
 struct SetupReport;
 
 /// Measures errors and enters them in the report; null when it was not possible.
-using MeasureForceError = std::shared_ptr<const ForceAccuracy> (*)(const ForceErrorSource&, const TissueView&,
+using MeasureForceError = std::shared_ptr<const ForceAccuracy> (*)(const detail::ForceErrorSource&, const TissueView&,
                                                                    const SetupLimits&, SetupReport&);
 
 /// By default nothing is measured and nothing is compiled. `measured_force_error()` of

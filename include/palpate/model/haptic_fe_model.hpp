@@ -49,7 +49,7 @@ class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
   using Tissue = typename detail::StaticModel<E, M, Solver>::Base;
 
  public:
-  static_assert(has_triangulated_faces<E>(),
+  static_assert(detail::has_triangulated_faces<E>(),
                 "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using ElementType = E;
   using MaterialType = M;

@@ -27,7 +27,7 @@ HapticFEModel<E, M, Solver>::HapticFEModel(const Mesh& mesh, const Scene& scene,
     : Tissue(options) {
   this->set_up(scene,
                detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
-               detail::make_stiffness<E, typename Traits::Assembly>, solver_recipe<Solver>(), options);
+               detail::make_stiffness<E, typename Traits::Assembly>, detail::solver_recipe<Solver>(), options);
 }
 
 template <class E, class M, class Solver>

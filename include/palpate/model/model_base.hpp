@@ -21,8 +21,12 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 class ElasticBody;
+namespace detail {
+
 struct AdmittedBody;
 struct Touchable;
+
+}  // namespace detail
 
 /// Options for the set-up of any model.
 struct SetupOptions {
@@ -88,7 +92,7 @@ class ModelBase {
   /// Takes over an admitted body and resolves its touchable and rendered parts. Reports values that look like other
   /// units, and a touchable part that is fixed. Throws the errors of resolving, and suspicious_units if the admission
   /// policy refuses such values.
-  Touchable admit(const Scene& scene, AdmittedBody admitted);
+  detail::Touchable admit(const Scene& scene, detail::AdmittedBody admitted);
   /// The scene of the set-up, with the ids of the admitted mesh.
   const Scene& scene() const noexcept { return scene_; }
   /// The scene with the ids of the admitted mesh. Throws unsupported when its touchable nodes or faces differ from the

@@ -23,7 +23,7 @@ PALPATE_INLINE Vector3 ModelBase::rest_position(NodeId node) const noexcept {
   return origin_ + body_->positions()[static_cast<std::size_t>(node)];
 }
 
-PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admitted) {
+PALPATE_INLINE detail::Touchable ModelBase::admit(const Scene& scene, detail::AdmittedBody admitted) {
   node_map_ = std::move(admitted.node_map);
   original_ids_ = std::move(admitted.ids);
   body_ = std::move(admitted.body);
@@ -33,15 +33,15 @@ PALPATE_INLINE Touchable ModelBase::admit(const Scene& scene, AdmittedBody admit
   gravity_ = scene_.gravity();
   other_loads_ = scene_.loads_in_words();
   place(Eigen::Isometry3d::Identity());
-  Touchable touchable = body_->touchable(scene_);
+  detail::Touchable touchable = body_->touchable(scene_);
   touchable_ = touchable.nodes;
   rendered_ = body_->rendered(scene_);
   report_.touchable_vertices = static_cast<Index>(touchable_.size());
   report_.rendered_nodes = static_cast<Index>(rendered_.size());
   const UnitCheck units{body_->region_names(), body_->elasticities(), body_->densities(), gravity_.norm(),
                         scene_.touch_radius()};
-  report_units(units, refuses_units_, report_);
-  report_fixed_contact(body_->conditions(scene_).constrained, touchable_, report_);
+  detail::report_units(units, refuses_units_, report_);
+  detail::report_fixed_contact(body_->conditions(scene_).constrained, touchable_, report_);
   return touchable;
 }
 
@@ -52,7 +52,7 @@ PALPATE_INLINE std::vector<std::string> ModelBase::notes() const {
 }
 
 PALPATE_INLINE ContactSurface::Unloaded ModelBase::unloaded() const {
-  ContactSurface::Unloaded unloaded{{}, loads_in_words(gravity_, other_loads_)};
+  ContactSurface::Unloaded unloaded{{}, detail::loads_in_words(gravity_, other_loads_)};
   for (const NodeId node : touchable_) unloaded.positions.push_back(body_->positions()[static_cast<std::size_t>(node)]);
   return unloaded;
 }
@@ -60,7 +60,7 @@ PALPATE_INLINE ContactSurface::Unloaded ModelBase::unloaded() const {
 PALPATE_INLINE Scene ModelBase::mapped(const Scene& scene, const std::vector<Triangle>& triangles) const {
   Scene mapped = scene.mapped(node_map_, origin_);
   if (mapped.touched().empty()) return mapped;
-  const Touchable touchable = body_->touchable(mapped);
+  const detail::Touchable touchable = body_->touchable(mapped);
   if (touchable.nodes != touchable_ || touchable.triangles != triangles)
     raise(SetupErrorKind::unsupported,
           "the new scene lets tools touch " + std::to_string(touchable.nodes.size()) + " nodes and " +

@@ -118,38 +118,42 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
                           const DofLayout& layout, const SetupLimits& limits);
 };
 
+namespace detail {
+
 /// Dense solver, scalar and eagerness of a condensed system.
 template <class Inner>
 struct CondensedTraits;
 template <std::floating_point S>
 struct CondensedTraits<BasicSelectiveInverse<S>> {
   using Scalar = S;
-  static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
+  static constexpr DenseKind kind = inverse_kind<S>;
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "Condensed<SelectiveInverse>";
 };
 template <>
 struct CondensedTraits<DenseCholesky> {
   using Scalar = double;
-  static constexpr detail::DenseKind kind = detail::DenseKind::cholesky;
+  static constexpr DenseKind kind = DenseKind::cholesky;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<DenseCholesky>";
 };
 template <>
 struct CondensedTraits<ConjugateGradient> {
   using Scalar = double;
-  static constexpr detail::DenseKind kind = detail::DenseKind::conjugate_gradient;
+  static constexpr DenseKind kind = DenseKind::conjugate_gradient;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<ConjugateGradient>";
 };
+
+}  // namespace detail
 
 template <class Inner>
 struct SolverTraits<Condensed<Inner>> {
   static_assert(sizeof(Condensed<Inner>) > 0);  // triggers the static_assert of Condensed first
   using Assembly = Assembled;
-  using Scalar = typename CondensedTraits<Inner>::Scalar;
-  static constexpr bool eager = CondensedTraits<Inner>::eager;
-  static constexpr std::string_view cache_name = CondensedTraits<Inner>::cache_name;
+  using Scalar = typename detail::CondensedTraits<Inner>::Scalar;
+  static constexpr bool eager = detail::CondensedTraits<Inner>::eager;
+  static constexpr std::string_view cache_name = detail::CondensedTraits<Inner>::cache_name;
   static CondensedSystem make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                               const SetupLimits& limits);
   static CondensedSystem read(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,

@@ -21,8 +21,8 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix&
                                                               const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});  // requested, but nothing is condensed onto them
-  const SparseMatrix lower = free_matrix(k, conditions);
-  return {SparseCholesky(CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
+  const detail::SparseMatrix lower = detail::free_matrix(k, conditions);
+  return {SparseCholesky(detail::CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
 }
 
 PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, const BlockMatrix& k,
@@ -30,14 +30,14 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, 
                                                               const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});
-  const SparseMatrix lower = free_matrix(k, conditions);
-  return {SparseCholesky::read(in, CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
+  const detail::SparseMatrix lower = detail::free_matrix(k, conditions);
+  return {SparseCholesky::read(in, detail::CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
 }
 
 PALPATE_INLINE Uncondensed SolverTraits<ConjugateGradient>::make(const BlockMatrix& k,
                                                                  const EssentialConditions& conditions,
                                                                  const DofLayout& layout, const SetupLimits& limits) {
-  return {IterativeSolver(FreeStiffness(k, conditions, limits), {}), layout.kept};
+  return {detail::IterativeSolver(detail::FreeStiffness(k, conditions, limits), {}), layout.kept};
 }
 
 namespace detail {

@@ -48,7 +48,7 @@ std::vector<Matrix6> compliances_of(const std::vector<Matrix6>& elasticities);
 /// (Tet4) to 35 us (Hex20) per element. Throws bad_argument when `u` or `nodal` do not fit the body.
 template <Element E>
 ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalStress& nodal) {
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   if (nodal.first.size() != static_cast<std::size_t>(body.mesh.node_count()) + 1)
     raise(SetupErrorKind::bad_argument, "the recovered stress belongs to another mesh", "Give patch_recovery(body, u)");
   const std::vector<Matrix6> compliances = detail::compliances_of(body.elasticity);
@@ -62,7 +62,8 @@ ErrorEstimate estimate_error(const Body<E>& body, const VectorX& u, const NodalS
     const auto points = state.template points<typename E::MassQuadrature>(e);
     double square = 0.0;
     for (std::size_t q = 0; q < points.size(); ++q) {
-      const Vector6 missed = at_nodes * E::shape(reference_point(E::MassQuadrature::points[q])) - points[q].stress;
+      const Vector6 missed =
+          at_nodes * E::shape(detail::reference_point(E::MassQuadrature::points[q])) - points[q].stress;
       square += points[q].volume * missed.dot(compliance * missed);
       energy += points[q].volume * points[q].stress.dot(compliance * points[q].stress);
     }

@@ -33,12 +33,12 @@ struct StressField {
 template <Element E>
 void recover_stress(const Body<E>& body, const VectorX& u, StressField& field) {
   const Mesh<E>& mesh = body.mesh;
-  const ElementStress<E> state(body, u);
+  const detail::ElementStress<E> state(body, u);
   field.elements.resize(6, mesh.element_count());
   field.nodes.setZero(6, mesh.node_count());
   field.node_volumes.setZero(mesh.node_count());
   for (Index e = 0; e < mesh.element_count(); ++e) {
-    const MeanStress mean = state.mean(e);
+    const detail::MeanStress mean = state.mean(e);
     field.elements.col(e) = mean.stress;
     for (int a = 0; a < E::nodes; ++a) {
       field.nodes.col(mesh.element_node(e, a)) += mean.volume * mean.stress;

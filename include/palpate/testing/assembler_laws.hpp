@@ -120,7 +120,8 @@ Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
     const Vector6 strain = voigt::strain_vector(0.5 * (a + a.transpose()));
     double energy = 0.0, bound = 1e-12 * scale * u.cwiseAbs().maxCoeff();
     for (Index e = 0; e < body.mesh.element_count(); ++e)
-      energy += shape_volumes<E>(element_nodes<E>(body.mesh, e)).sum() * strain.dot(body.elasticity_of(e) * strain);
+      energy += palpate::detail::shape_volumes<E>(element_nodes<E>(body.mesh, e)).sum() *
+                strain.dot(body.elasticity_of(e) * strain);
     const std::string name = "trial " + std::to_string(trial);
     expect_at_most(v, "affine energy", std::abs(size.dot(force) - energy), bound * size.cwiseAbs().sum(), name);
     bool uniform = true;
@@ -128,8 +129,8 @@ Violations affine_patch_laws(const Body<E>& body, const K& k, double scale) {
     if (!uniform) continue;
     const Matrix3 stress = voigt::stress_tensor(body.elasticity.front() * strain);
     for (const BoundaryFace& face : extract_boundary<E>(body.mesh))
-      with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
-        const auto areas = shape_area_vectors<F>(face_nodes<F>(body.mesh, face));
+      palpate::detail::with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
+        const auto areas = palpate::detail::shape_area_vectors<F>(palpate::detail::face_nodes<F>(body.mesh, face));
         for (int i = 0; i < F::nodes; ++i)
           force.template segment<3>(3 * Index{face.nodes[static_cast<std::size_t>(i)]}) -=
               stress * areas.row(i).transpose();

@@ -15,7 +15,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 
 /// The inverse of a small operator by dense Cholesky, column by column: the reference for condensed solutions.
-template <SpdOperator Op>
+template <palpate::detail::SpdOperator Op>
 MatrixX full_inverse(const Op& op) {
   const Index n = op.size();
   MatrixX k(n, n);
@@ -86,7 +86,7 @@ Violations compliance_laws(const MatrixX& inverse, S& system, std::span<const In
 
 /// Laws of a static system with the dofs `kept` (in its order) of the operator it was constructed from. O(n^3): for
 /// small systems.
-template <SpdOperator Op, StaticSystem S>
+template <palpate::detail::SpdOperator Op, StaticSystem S>
 Violations condensation_laws(const Op& op, S& system, std::span<const Index> kept, double tolerance = 1e-11) {
   Violations v;
   expect_true(v, "size", static_cast<Index>(system.size()) == static_cast<Index>(op.size()));

@@ -27,7 +27,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace testing {
 template <Element E>
 bool face_nodes_in_range() {
   for (std::size_t f = 0; f < E::faces.size(); ++f)
-    for (int a : local_face<E>(f))
+    for (int a : palpate::detail::local_face<E>(f))
       if (a < 0 || a >= E::nodes) return false;
   return true;
 }

@@ -49,7 +49,7 @@ double flux_of_position(const FaceNodes<F>& x) {
 template <FaceElement F, Element E>
 FaceNodes<F> reference_face(std::size_t f) {
   const ElementNodes<E> x = E::reference_nodes();
-  const auto local = local_face<E>(f);
+  const auto local = palpate::detail::local_face<E>(f);
   FaceNodes<F> face;
   for (std::size_t a = 0; a < local.size(); ++a) face.row(static_cast<Eigen::Index>(a)) = x.row(local[a]);
   return face;
@@ -60,7 +60,7 @@ FaceNodes<F> reference_face(std::size_t f) {
 template <FaceElement F, Element E>
 double trace_error(std::size_t f) {
   const auto x = reference_face<F, E>(f);
-  const auto local = local_face<E>(f);
+  const auto local = palpate::detail::local_face<E>(f);
   double worst = 0.0;
   for (const auto& xi : sample_points<F::nodes, 2>(F::reference_nodes())) {
     const Eigen::Matrix<double, F::nodes, 1> on_face = F::shape(xi);
@@ -111,8 +111,9 @@ Violations face_laws() {
   for (std::size_t f = 0; f < E::faces.size(); ++f) {
     Vector3 area = Vector3::Zero();
     double flux = 0.0;
-    append(v, with_face_element<E>(local_face<E>(f).size(),
-                                   [&]<FaceElement F>() { return one_face_laws<F, E>(f, area, flux); }));
+    append(v, palpate::detail::with_face_element<E>(palpate::detail::local_face<E>(f).size(), [&]<FaceElement F>() {
+             return one_face_laws<F, E>(f, area, flux);
+           }));
     closed += area;
     volume += flux / 3.0;
   }

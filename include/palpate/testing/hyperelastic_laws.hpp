@@ -138,7 +138,7 @@ Violations rotation_laws(const M& m, double modulus, bool isotropic) {
 /// `law`: the stress in S equals that in double at the same F, to 32 times the effect of a rounding error in F.
 template <class S, HyperelasticMaterial M>
 Violations precision_law(const M& m, double modulus, const char* law) {
-  using Scalar = scalar_of<S>;
+  using Scalar = palpate::detail::scalar_of<S>;
   constexpr int lanes = static_cast<int>(sizeof(S) / sizeof(Scalar));
   Violations v;
   Random random(1985);
@@ -186,8 +186,8 @@ Violations domain_laws(const M& m) {
       }
       expect_true(v, "holds everywhere", m.admits(x), detail::name_of(k));
       Tensor3<float> single;
-      Tensor3<Lanes<double, 8>> wide;
-      Tensor3<Lanes<float, 16>> wide_single;
+      Tensor3<palpate::detail::Lanes<double, 8>> wide;
+      Tensor3<palpate::detail::Lanes<float, 16>> wide_single;
       for (int e = 0; e < 9; ++e) {
         wide.e[e] = x.e[e];
         wide_single.e[e] = single.e[e] = static_cast<float>(x.e[e]);
@@ -254,8 +254,8 @@ Violations hyperelastic_material_laws(const M& material, HyperelasticClaims clai
   append(v, derivative_laws(material));
   append(v, rotation_laws(material, modulus, claims.isotropic));
   append(v, precision_law<float>(material, modulus, "float equals double"));
-  append(v, precision_law<Lanes<double, 8>>(material, modulus, "lanes equal one"));
-  append(v, precision_law<Lanes<float, 16>>(material, modulus, "lanes of float equal double"));
+  append(v, precision_law<palpate::detail::Lanes<double, 8>>(material, modulus, "lanes equal one"));
+  append(v, precision_law<palpate::detail::Lanes<float, 16>>(material, modulus, "lanes of float equal double"));
   append(v, domain_laws(material));
   append(v, collapse_laws(material, claims.barrier));
   append(v, range_laws(material));

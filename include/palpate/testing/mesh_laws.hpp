@@ -126,12 +126,12 @@ std::vector<MeshFace> faces_with_areas(const M& mesh) {
   for (Index e = 0; e < static_cast<Index>(mesh.element_count()); ++e) {
     const ElementNodes<E> x = element_nodes<E>(mesh, e);
     for (std::size_t f = 0; f < E::faces.size(); ++f) {
-      const auto local = local_face<E>(f);
+      const auto local = palpate::detail::local_face<E>(f);
       MeshFace face;
       face.element = e;
       for (const int a : local) face.key.push_back(static_cast<Index>(mesh.element_node(e, a)));
       std::ranges::sort(face.key);
-      with_face_element<E>(local.size(), [&]<FaceElement F>() {
+      palpate::detail::with_face_element<E>(local.size(), [&]<FaceElement F>() {
         FaceNodes<F> nodes;
         for (std::size_t a = 0; a < local.size(); ++a)
           nodes.row(static_cast<Eigen::Index>(a)) = x.row(local[a]) - x.row(0);

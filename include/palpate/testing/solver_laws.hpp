@@ -23,7 +23,7 @@ struct SolverClaims {
 };
 
 /// The largest of |K t| / |t| over a few vectors: an estimate of |K|_2 within a small factor.
-template <SpdOperator Op>
+template <palpate::detail::SpdOperator Op>
 double norm_estimate(const Op& op) {
   Random random(1929);
   VectorX x(op.size()), y(op.size());
@@ -39,7 +39,7 @@ double norm_estimate(const Op& op) {
 }
 
 /// The residual |b - K x|, from `apply`.
-template <SpdOperator Op>
+template <palpate::detail::SpdOperator Op>
 double residual(const Op& op, const VectorX& b, const VectorX& x) {
   VectorX r(b.size());
   op.apply(x, r);
@@ -54,7 +54,7 @@ Violations report_laws(const SolveReport& report, double relative_residual, bool
 /// Laws of a prepared solver of the system `op`: "size"; for several loads "solves" (backward error within the claim),
 /// "finite", "same answer twice" to the last bit for any previous content of x, "load is left alone", "report is
 /// truthful"; "zero load gives zero" exactly; and "symmetric" (f . K^-1 g = g . K^-1 f).
-template <SpdOperator Op, LinearSolver S>
+template <palpate::detail::SpdOperator Op, LinearSolver S>
 Violations solver_laws(const Op& op, S& solver, SolverClaims claims = {}) {
   Violations v;
   const Index n = op.size();
@@ -93,7 +93,7 @@ Violations solver_laws(const Op& op, S& solver, SolverClaims claims = {}) {
 
 /// "accurate": the solution for the load K t is t within the relative `bound`, for a few known t. Stronger than a small
 /// residual; the bound depends on the condition of K.
-template <SpdOperator Op, LinearSolver S>
+template <palpate::detail::SpdOperator Op, LinearSolver S>
 Violations accuracy_laws(const Op& op, S& solver, double bound) {
   Violations v;
   Random random(1861);

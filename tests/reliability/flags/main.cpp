@@ -20,12 +20,12 @@ namespace {
 std::array<double, 2> statics() {
   const auto mesh = box_tet4({0.1, 0.08, 0.06}, {4, 3, 3});
   const auto body = make_body(mesh, std::vector<LinearElastic>{{5e3, 0.45, 1000.0}});
-  const auto conditions = resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), Scene().fix("x0"));
-  const SparseMatrix lower = free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
+  const auto conditions = detail::resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), Scene().fix("x0"));
+  const detail::SparseMatrix lower = detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
   DofLayout layout;
   layout.positions = mesh.positions;
   for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
-  SparseCholesky solver(CholeskyAnalysis(lower, layout), lower, {});
+  SparseCholesky solver(detail::CholeskyAnalysis(lower, layout), lower, {});
   VectorX load = VectorX::Zero(lower.rows()), u(lower.rows());
   for (Index i = 0; i < load.size(); i += 5) load[i] = 0.01;
   solver.solve_into(load, u);

@@ -35,6 +35,8 @@ class StiffnessView {
   std::vector<Matrix3> (*diagonal_blocks_)(const void*);
 };
 
+namespace detail {
+
 /// Owns any StiffnessOperator. Movable, not copyable; the address of the owned operator is stable.
 class AnyStiffness {
  public:
@@ -71,5 +73,7 @@ class AnyStiffness {
 
   std::unique_ptr<Base> owned_;
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -23,7 +23,7 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
 /// P grad N_a, Lanes<S, N> of elements simultaneously. Elements are grouped in blocks of 512 that are summed in the
@@ -81,19 +81,19 @@ class BatchedTetrahedra {
     const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
     S* const rows = layout_.cleared(block, rows_);
     const M material = materials_[static_cast<std::size_t>(block.region)];
-    detail::VolumeWatch<S, N> watch;
+    VolumeWatch<S, N> watch;
     if constexpr (has_kernel) {
-      const auto [lambda, mu] = detail::lame<S>(material.small_strain());
+      const auto [lambda, mu] = lame<S>(material.small_strain());
       S volumes[4 * N];
-      detail::tetrahedron_kernels().neo_hookean({layout_.batches.data() + block.first_batch, block.batch_count,
-                                                 layout_.nodes.data() + block.first_row, block.row_count, u.data(),
-                                                 rows, lambda, mu, volumes});
+      tetrahedron_kernels().neo_hookean({layout_.batches.data() + block.first_batch, block.batch_count,
+                                         layout_.nodes.data() + block.first_row, block.row_count, u.data(), rows,
+                                         lambda, mu, volumes});
       watch.read(volumes);
     } else {
       layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
         watch.observe(determinant(f, cofactor(f)), batch.volume);
         batch.add_force(material.stress(f), rows);
-        if constexpr (!detail::RangedByVolume<M>) observe_range(batch, material, f);
+        if constexpr (!RangedByVolume<M>) observe_range(batch, material, f);
       });
     }
     DeformationReport& report = reports_[static_cast<std::size_t>(index)];
@@ -103,7 +103,7 @@ class BatchedTetrahedra {
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
-  DeformationReport report() const noexcept { return detail::report_of(reports_); }
+  DeformationReport report() const noexcept { return report_of(reports_); }
 
  private:
   using Batch = TetrahedronBatch<S, N>;
@@ -114,7 +114,7 @@ class BatchedTetrahedra {
   }
   /// Elements of a block beyond the range of their material.
   Index beyond_range(const TetrahedronBlock& block, const M& material, const VectorX& u, double smallest) noexcept {
-    if constexpr (detail::RangedByVolume<M>) {
+    if constexpr (RangedByVolume<M>) {
       if (smallest > material.range_volume_ratio()) return 0;
       layout_.for_each_gradient(block, u,
                                 [&](const Batch& batch, const Gradient& f) { observe_range(batch, material, f); });
@@ -130,8 +130,8 @@ class BatchedTetrahedra {
   std::vector<M> materials_;                // by region
   std::vector<S> rows_;                     // force on every row, four numbers per row
   std::vector<DeformationReport> reports_;  // by block
-  detail::RangeWatch<M, S, N> range_;
+  RangeWatch<M, S, N> range_;
   double probe_length_ = 0.0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -24,7 +24,7 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A `Corotational` body at a displacement, several elements simultaneously: energy, force, and products with the
 /// stiffness at constant rotations and cofactors, which is positive semidefinite in every state. Its shear part is
@@ -41,7 +41,7 @@ class CorotatedTetrahedra {
   /// Throws as make_batches.
   explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
       : layout_(make_batches<S, N>(body, 280.0, limits)) {
-    for (const Material& material : body.materials) materials_.push_back(detail::lame<Lane>(material.base));
+    for (const Material& material : body.materials) materials_.push_back(lame<Lane>(material.base));
     laws_ = body.materials;
     range_.resize(layout_.batches.size());
     rows_.assign(4 * layout_.nodes.size(), S(0));
@@ -61,7 +61,7 @@ class CorotatedTetrahedra {
     range_.next_turn();
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) energy += linearise_block(b, u);
     layout_.add_up(rows_.data(), 0, layout_.node_count(), f);
-    DeformationReport report = detail::report_of(reports_);
+    DeformationReport report = report_of(reports_);
     report.beyond_range = range_.count();
     return report;
   }
@@ -136,8 +136,8 @@ class CorotatedTetrahedra {
     alignas(64) S local[4 * TetrahedronBatches<S, N>::most_rows];
     layout_.load_displacements(block, u, local);
     S* const rows = layout_.cleared(block, rows_);
-    const detail::Lame<Lane> material = materials_[static_cast<std::size_t>(block.region)];
-    detail::VolumeWatch<S, N> watch;
+    const Lame<Lane> material = materials_[static_cast<std::size_t>(block.region)];
+    VolumeWatch<S, N> watch;
     Lane stored(S(0));
     for (Index b = block.first_batch; b < block.first_batch + block.batch_count; ++b) {
       const Batch& batch = layout_.batches[static_cast<std::size_t>(b)];
@@ -147,8 +147,8 @@ class CorotatedTetrahedra {
       const Lane ratio = determinant(f, c), swelling = ratio - Lane(S(1));
       watch.observe(ratio, batch.volume);
       range_.observe(static_cast<std::size_t>(b), laws_[static_cast<std::size_t>(block.region)], f, batch.volume);
-      stored += batch.volume * detail::corotated_energy(material, d, swelling);
-      batch.add_force(detail::corotated_stress(material, d, c, swelling), rows);
+      stored += batch.volume * corotated_energy(material, d, swelling);
+      batch.add_force(corotated_stress(material, d, c, swelling), rows);
       rotate_gradients(r, batch, rotated);
       rotated.cofactor = Symmetric::part_of(c * transpose(r));
     }
@@ -201,12 +201,12 @@ class CorotatedTetrahedra {
   }
 
   TetrahedronBatches<S, N> layout_;
-  std::vector<detail::Lame<Lane>> materials_;  // by region
+  std::vector<Lame<Lane>> materials_;  // by region
   std::vector<RotatedBatch> rotated_;
   mutable std::vector<S> rows_;             // force on every row, four numbers per row: a workspace
   std::vector<DeformationReport> reports_;  // by block
   std::vector<Material> laws_;              // by region
-  detail::RangeWatch<Material, S, N> range_;
+  RangeWatch<Material, S, N> range_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

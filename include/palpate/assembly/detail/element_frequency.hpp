@@ -14,12 +14,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-namespace detail {
 /// Not a template: Eigen's solver takes seconds to compile for every size.
 double largest_symmetric_eigenvalue(const MatrixX& symmetric);
-}  // namespace detail
 
 /// Upper bound of omega^2 [1/s^2] of a body at rest with lumped mass (lumped_mass): the largest value of any single
 /// element (Irons and Treharne 1971). Up to twice the true value in good meshes, more with slivers. Valid with and
@@ -36,14 +34,14 @@ double element_frequency_bound(const Body<E>& body) {
     MatrixX k = element_stiffness<E>(x, body.elasticity_of(e));
     for (int i = 0; i < 3 * E::nodes; ++i)
       for (int j = 0; j < 3 * E::nodes; ++j) k(i, j) /= density * std::sqrt(volumes[i / 3] * volumes[j / 3]);
-    const double square = detail::largest_symmetric_eigenvalue(k);
+    const double square = largest_symmetric_eigenvalue(k);
     if (!std::isfinite(square)) raise_element(SetupErrorKind::non_finite, e, "has a stiffness that is not finite");
     largest = std::max(largest, square);
   }
   return largest;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/assembly/detail/element_frequency.ipp>

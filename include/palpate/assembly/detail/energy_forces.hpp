@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Parts of a computed energy [J] and of the norm of computed forces f [N] that are due to rounding; with the inverse H
 /// of a step also of their energy f.Hf [J] and displacement Hf [m].
@@ -94,4 +94,4 @@ inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positio
   return largest;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

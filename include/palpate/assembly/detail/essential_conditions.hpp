@@ -42,6 +42,8 @@ struct EssentialConditions {
   }
 };
 
+namespace detail {
+
 /// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when
 /// one dof has two different values.
 inline EssentialConditions resolve_essential(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
@@ -78,5 +80,7 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
                                       const Scene& scene) {
   return resolve_essential(mesh_ref(mesh), boundary, scene);
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

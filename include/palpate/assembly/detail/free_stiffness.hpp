@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
@@ -104,7 +104,7 @@ inline FreeStiffness::FreeStiffness(StiffnessView stiffness, const EssentialCond
   std::vector<Matrix3> blocks = stiffness.diagonal_blocks();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const unsigned fixed = conditions.constrained[i];
-    blocks[i] = inverse(detail::free_block(blocks[i].data(), fixed, fixed, true));
+    blocks[i] = inverse(free_block(blocks[i].data(), fixed, fixed, true));
   }
   inverse_blocks_ = std::make_shared<const std::vector<Matrix3>>(std::move(blocks));
 }
@@ -139,4 +139,4 @@ inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditi
   return sums.size() > 0 ? sums.maxCoeff() : 0.0;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,9 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A block of K with the identity in place of the prescribed dofs of both nodes.
 inline Matrix3 free_block(const double* k, unsigned fixed_rows, unsigned fixed_columns, bool diagonal) noexcept {
@@ -24,8 +22,6 @@ inline Matrix3 free_block(const double* k, unsigned fixed_rows, unsigned fixed_c
     }
   return block;
 }
-
-}  // namespace detail
 
 /// P = L D L^T on the pattern of K, without fill (IC(0) of Meijerink and van der Vorst 1977, by blocks). When a pivot
 /// block is not safely positive definite, the factorisation restarts with a larger multiple of the diagonal blocks of K
@@ -63,7 +59,7 @@ class IncompleteCholesky {
   double shift_ = 0.0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/assembly/detail/incomplete_cholesky.ipp>

@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// s -= a b^T for column-major 3 x 3 blocks.
 inline void subtract_product(double* s, const double* a, const float* b) noexcept {
@@ -31,8 +29,6 @@ inline bool is_safely_positive_definite(const Matrix3& m, const double* diagonal
   const double l21 = (a[5] - l20 * a[1]) / d1;
   return a[8] - l20 * a[2] - l21 * l21 * d1 > smallest * diagonal[2];
 }
-
-}  // namespace detail
 
 PALPATE_INLINE IncompleteCholesky::IncompleteCholesky(const BlockMatrix& k, const EssentialConditions& conditions,
                                                       const SetupLimits& limits) {
@@ -94,31 +90,31 @@ PALPATE_INLINE bool IncompleteCholesky::factorise_row(const BlockMatrix& k, cons
   const unsigned fixed = conditions.constrained[at(row)];
   const Index begin = row_start_[at(row)], end = row_start_[at(row) + 1];
   scaled.resize(at(end - begin));
-  Matrix3 pivot = detail::free_block(k.block(k.pattern().diagonal(row)).data(), fixed, fixed, true);
+  Matrix3 pivot = free_block(k.block(k.pattern().diagonal(row)).data(), fixed, fixed, true);
   std::array<double, 3> diagonal{};
   for (int c = 0; c < 3; ++c) diagonal[static_cast<std::size_t>(c)] = pivot(c, c);
   for (int c = 0; c < 9; ++c) pivot.data()[c] *= 1.0 + shift_;
   for (Index p = begin; p < end; ++p) {
     const Index column = column_[at(p)];
-    Matrix3 block = detail::free_block(k.block(p + row).data(), fixed, conditions.constrained[at(column)], false);
+    Matrix3 block = free_block(k.block(p + row).data(), fixed, conditions.constrained[at(column)], false);
     Index mine = begin, other = row_start_[at(column)];
     const Index other_end = row_start_[at(column) + 1];
     while (mine < p && other < other_end) {  // columns that both rows have
       const NodeId a = column_[at(mine)], b = column_[at(other)];
-      if (a == b) detail::subtract_product(block.data(), scaled[at(mine - begin)].data(), lower_[at(other)].data());
+      if (a == b) subtract_product(block.data(), scaled[at(mine - begin)].data(), lower_[at(other)].data());
       mine += a <= b ? 1 : 0;
       other += b <= a ? 1 : 0;
     }
     const Matrix3 lower = block * inverse_pivot_[at(column)];
     std::transform(lower.data(), lower.data() + 9, lower_[at(p)].begin(),
                    [](double v) { return static_cast<float>(v); });
-    detail::subtract_product(pivot.data(), block.data(), lower_[at(p)].data());
+    subtract_product(pivot.data(), block.data(), lower_[at(p)].data());
     scaled[at(p - begin)] = block;
   }
   for (int c = 0; c < 3; ++c)
     for (int d = 0; d < c; ++d) pivot(c, d) = pivot(d, c) = 0.5 * (pivot(c, d) + pivot(d, c));
   inverse_pivot_[at(row)] = inverse(pivot);
-  return detail::is_safely_positive_definite(pivot, diagonal.data(), smallest_pivot);
+  return is_safely_positive_definite(pivot, diagonal.data(), smallest_pivot);
 }
 
 PALPATE_INLINE void IncompleteCholesky::solve_into(const VectorX& r, VectorX& z) const noexcept {
@@ -149,4 +145,4 @@ PALPATE_INLINE void IncompleteCholesky::solve_into(const VectorX& r, VectorX& z)
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

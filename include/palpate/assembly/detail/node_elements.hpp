@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// For every node the numbers of the items that contain it, ascending: elements, faces, triangles.
 class NodeLists {
@@ -63,4 +63,4 @@ inline NodeElements::NodeElements(const MeshRef& mesh) {
   });
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

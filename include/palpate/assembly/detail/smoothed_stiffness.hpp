@@ -20,6 +20,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Pattern of nodes that share a domain: nodes of elements with a common node. O(nodes x neighbours^2), allocates.
 template <HasSmoothedStrain E>
 BlockPattern smoothed_pattern(const Mesh<E>& mesh, const NodeElements& around) {
@@ -62,22 +64,27 @@ void for_each_domain_block(const StrainDomain& domain, const Matrix6& d, Add&& a
   }
 }
 
+}  // namespace detail
+
 /// Assembles the sum over domains of V B^T D B, for elements with smoothed strain. Throws as StrainDomains.
-template <HasSmoothedStrain E>
+template <detail::HasSmoothedStrain E>
 BlockMatrix assemble_stiffness(const Body<E>& body, const SetupLimits& limits) {
-  const NodeElements around(body.mesh);
-  BlockMatrix k = make_stiffness(smoothed_pattern(body.mesh, around), limits);
-  const StrainDomains<E> domains(body.mesh, around, limits);
-  const DomainElasticity elasticity(body, domains);
+  const detail::NodeElements around(body.mesh);
+  BlockMatrix k = detail::make_stiffness(detail::smoothed_pattern(body.mesh, around), limits);
+  const detail::StrainDomains<E> domains(body.mesh, around, limits);
+  const detail::DomainElasticity elasticity(body, domains);
   for (Index d = 0; d < domains.size(); ++d) {
     if (d % 65536 == 0) limits.advance("assembly", static_cast<double>(d) / static_cast<double>(domains.size()));
-    const StrainDomain domain = domains[d];
-    for_each_domain_block(domain, elasticity(d, domain), [&](std::size_t a, std::size_t b, const Matrix3& block) {
-      k.block(k.pattern().find(domain.nodes[a], domain.nodes[b])) += block;
-    });
+    const detail::StrainDomain domain = domains[d];
+    detail::for_each_domain_block(domain, elasticity(d, domain),
+                                  [&](std::size_t a, std::size_t b, const Matrix3& block) {
+                                    k.block(k.pattern().find(domain.nodes[a], domain.nodes[b])) += block;
+                                  });
   }
   return k;
 }
+
+namespace detail {
 
 /// K x domain by domain, without a matrix: stores the domains. Satisfies StiffnessOperator.
 template <HasSmoothedStrain E>
@@ -145,16 +152,20 @@ VectorX initial_strain_load(const Body<E>& body, const std::vector<Vector6>& str
   return f;
 }
 
+}  // namespace detail
+
 /// Stored energy [J] for nodal displacements u (3 entries per node [m]).
-template <HasSmoothedStrain E>
+template <detail::HasSmoothedStrain E>
 double strain_energy(const Body<E>& body, const VectorX& u) {
   double energy = 0.0;
-  for_each_domain_stress(body, body.initial_strain, u,
-                         [&](const StrainDomain& domain, const Vector6& stress, const Vector6& strain) {
-                           energy += 0.5 * domain.volume * stress.dot(strain);
-                         });
+  detail::for_each_domain_stress(body, body.initial_strain, u,
+                                 [&](const detail::StrainDomain& domain, const Vector6& stress, const Vector6& strain) {
+                                   energy += 0.5 * domain.volume * stress.dot(strain);
+                                 });
   return energy;
 }
+
+namespace detail {
 
 /// Strain, and stress [Pa], of every element, one per column: means over its edges and nodes. With this stress an
 /// element contributes the same nodal forces B^T sigma V as in K.
@@ -182,5 +193,7 @@ SmoothedState smoothed_state(const Body<E>& body, const VectorX& u) {
   for_each_domain_stress(body, body.initial_strain, u, visit);
   return state;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

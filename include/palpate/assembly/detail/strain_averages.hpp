@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The domains of one kind (edges or nodes) in batches of N of one region, each with weights of the elements around it
 /// that sum to 1. Elements and domains are numbered by their place in the batches. 8 to 12 bytes per pair of a domain
@@ -226,4 +226,4 @@ class StrainAverages {
   std::vector<Ends> ends_;  // of every domain; none in empty lanes
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The part of the elasticity that acts on the strain of a domain.
 enum class StrainPart : std::uint8_t { deviatoric, volumetric };
@@ -253,4 +253,4 @@ inline std::size_t DomainElasticity::place(std::size_t material, StrainPart part
   return 2 * material + (part == StrainPart::volumetric ? 1 : 0);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

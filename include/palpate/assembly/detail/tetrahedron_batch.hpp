@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// N tetrahedra of one region. Lanes without an element have zero gradients and volume, so F = I there.
 template <class S, int N>
@@ -50,8 +50,6 @@ struct TetrahedronBatch {
   }
 };
 
-namespace detail {
-
 inline constexpr Index tetrahedra_per_block = 512;
 
 /// Displacements of a block's nodes minus that of its first node, in rows of four numbers: single precision then keeps
@@ -86,6 +84,4 @@ struct VolumeLanes {
   }
 };
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

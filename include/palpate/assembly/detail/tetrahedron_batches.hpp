@@ -24,15 +24,13 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Neighbouring elements of one region.
 struct ElementBlock {
   int region = 0;
   std::vector<NodeId> elements;  ///< element ids
 };
-
-namespace detail {
 
 /// Bisects along the longest side of the bounding box of the centres until a part has at most `most` elements. Cuts
 /// are at multiples of `group`.
@@ -60,8 +58,6 @@ inline void bisect_elements(std::span<NodeId> elements, const std::vector<Vector
   bisect_elements(elements.subspan(middle), centre, most, group, region, blocks);
 }
 
-}  // namespace detail
-
 /// Divides a mesh into blocks of at most `most` elements, all but the last of a region a multiple of `group`.
 /// Deterministic for a given mesh. O(elements log elements).
 template <Element E>
@@ -78,7 +74,7 @@ std::vector<ElementBlock> element_blocks(const Mesh<E>& mesh, Index most, Index 
   }
   std::vector<ElementBlock> blocks;
   for (std::size_t r = 0; r < of_region.size(); ++r)
-    if (!of_region[r].empty()) detail::bisect_elements(of_region[r], centre, most, group, static_cast<int>(r), blocks);
+    if (!of_region[r].empty()) bisect_elements(of_region[r], centre, most, group, static_cast<int>(r), blocks);
   for (ElementBlock& block : blocks) std::ranges::sort(block.elements);
   return blocks;
 }
@@ -98,7 +94,7 @@ struct TetrahedronBlock {
 /// about two rows per node.
 template <class S, int N>
 struct TetrahedronBatches {
-  static constexpr Index elements_per_block = detail::tetrahedra_per_block;
+  static constexpr Index elements_per_block = tetrahedra_per_block;
   static constexpr Index most_rows = 4 * elements_per_block;
 
   std::vector<TetrahedronBatch<S, N>> batches;
@@ -161,7 +157,7 @@ struct TetrahedronBatches {
 
   /// As detail::load_relative.
   void load_displacements(const TetrahedronBlock& block, const VectorX& u, S* local) const noexcept {
-    detail::load_relative(nodes.data() + block.first_row, block.row_count, u.data(), local);
+    load_relative(nodes.data() + block.first_row, block.row_count, u.data(), local);
   }
   /// Calls visit(batch, F) for every batch of a block at a displacement.
   template <class Visit>
@@ -275,8 +271,4 @@ TetrahedronBatches<S, N> make_batches(const HyperelasticBody<E, M>& body, double
   return TetrahedronBatches<S, N>(body.rest.mesh);
 }
 
-namespace detail {
-
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

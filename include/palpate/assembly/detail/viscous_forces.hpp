@@ -23,6 +23,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// A body at small strain with the Prony series of its regions.
 template <Element E>
 struct ViscousBody {
@@ -30,8 +32,6 @@ struct ViscousBody {
   std::vector<std::vector<PronyTerm>> terms;  ///< by region
   std::vector<Relaxation> relaxation;         ///< by region
 };
-
-namespace detail {
 
 /// Elasticity of every material of a body [Pa], where region r counts `share(r)` of the relaxing part and `kept` of
 /// the constant part. Throws unsupported for deviatoric relaxation where the pressure depends on the deviatoric strain
@@ -76,10 +76,10 @@ inline std::vector<double> distinct_times(const std::vector<std::vector<PronyTer
 
 /// An admitted mesh with viscoelastic materials by region name; throws as materials_by_region.
 template <Element E, LinearMaterial Base, int Terms>
-ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
-  ViscousBody<E> body;
+detail::ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
+  detail::ViscousBody<E> body;
   std::vector<Base> bases;
-  for (const auto& material : materials_by_region(mesh, materials)) {
+  for (const auto& material : detail::materials_by_region(mesh, materials)) {
     bases.push_back(material.base);
     bases.back().density = material.density;
     body.terms.emplace_back(material.terms.begin(), material.terms.end());
@@ -90,9 +90,11 @@ ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, 
 }
 /// The same with one material for all regions.
 template <Element E, LinearMaterial Base, int Terms>
-ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
+detail::ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
   return make_body(std::move(mesh), RegionMaterials<Viscoelastic<Base, Terms>>{{everywhere, material}});
 }
+
+namespace detail {
 
 /// f = K_0 u + sum_i K_i w_i, where K_i is the stiffness of the part that relaxes with tau_i and w_i' + w_i / tau_i =
 /// u'. Stress is linear in strain and strain in u, so one displacement vector per relaxation time stores the history of
@@ -104,11 +106,10 @@ class ViscousForces final : public ElasticForces {
 
   /// Throws as assemble_stiffness, and unsupported for deviatoric relaxation of an anisotropic material.
   template <Element E>
-  explicit ViscousForces(ViscousBody<E> body, const SetupLimits& limits = {})
-      : times_(detail::distinct_times(body.terms)) {
+  explicit ViscousForces(ViscousBody<E> body, const SetupLimits& limits = {}) : times_(distinct_times(body.terms)) {
     const auto assemble = [&](const ViscousBody<E>& of, double kept, auto share) {
       Body<E> part = of.fast;
-      part.elasticity = detail::shares_of_elasticity(of, kept, share);
+      part.elasticity = shares_of_elasticity(of, kept, share);
       return assemble_stiffness<E>(part, limits);
     };
     const auto share_of = [&](std::size_t region, double time) {
@@ -185,9 +186,11 @@ inline void ViscousForces::set_length(double dt) noexcept {
   step_.copy_values(slow_);
   for (std::size_t i = 0; i < times_.size(); ++i) {
     decay_[i] = std::exp(-dt / times_[i]);
-    gain_[i] = detail::mean_decay(dt / times_[i]);
+    gain_[i] = mean_decay(dt / times_[i]);
     step_.add(gain_[i], fading_[i]);
   }
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -15,10 +15,10 @@ namespace palpate { inline namespace PALPATE_ABI { namespace c_interface {
 /// A parsed file or copied arrays, with groups that were added.
 struct GivenMesh {
   std::optional<io::FileMesh> file;
-  double scale = 1.0;      ///< of a file
-  PlainMesh plain;         ///< without a file
-  int nodes_per_cell = 0;  ///< of `plain`
-  GroupTable groups;       ///< added by name
+  double scale = 1.0;                ///< of a file
+  palpate::detail::PlainMesh plain;  ///< without a file
+  int nodes_per_cell = 0;            ///< of `plain`
+  GroupTable groups;                 ///< added by name
 
   Index node_count() const noexcept;
   Vector3 position(Index i) const noexcept;  ///< [m]
@@ -35,7 +35,7 @@ Mesh<E> mesh_of(const GivenMesh& given) {
     mesh = io::build_mesh<E>(*given.file, given.scale, nullptr);
   } else {
     require_nodes_per_cell(given, E::nodes);
-    mesh = to_mesh<E>(PlainMesh(given.plain));
+    mesh = to_mesh<E>(palpate::detail::PlainMesh(given.plain));
   }
   for (const Group& added : given.groups.all()) {
     Group& group = mesh.groups.get_or_add(added.name, 0);

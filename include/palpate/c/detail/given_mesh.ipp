@@ -32,7 +32,7 @@ PALPATE_INLINE void require_nodes_per_cell(const GivenMesh& given, int nodes) {
 namespace {
 
 /// Regions as MeshArrays names them.
-void take_regions(std::span<const std::int32_t> regions, std::size_t cells, PlainMesh& mesh) {
+void take_regions(std::span<const std::int32_t> regions, std::size_t cells, palpate::detail::PlainMesh& mesh) {
   std::int32_t last = 0;
   for (const std::int32_t region : regions) {
     if (region < 0 || static_cast<std::size_t>(region) > cells)
@@ -103,7 +103,7 @@ palpate_error palpate_mesh_from_arrays(const double* positions, size_t node_coun
     const auto x = numbers(positions, 3 * node_count, "positions");
     const auto ids = numbers(cells, numbers_per_cell * cell_count, "cells");
     auto made = std::make_unique<palpate_mesh>();
-    palpate::PlainMesh& plain = made->given.plain;
+    palpate::detail::PlainMesh& plain = made->given.plain;
     made->given.nodes_per_cell = nodes_per_cell;
     for (std::size_t i = 0; i < node_count; ++i) plain.positions.emplace_back(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
     plain.connectivity.assign(ids.begin(), ids.end());

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// K split into kept and condensed dofs. With P_f = -K_kc K_cc^-1 the condensed system is P_u u_k = f_k + P_f f_c,
 /// where P_u = K_kk - K_kc K_cc^-1 K_ck. The thesis drops P_f f_c; here loads on condensed dofs are included. The kept
@@ -30,4 +30,4 @@ inline SchurComplement condense(const SparseLower& lower, std::vector<Index> kep
   return condense(lower, DofLayout{{}, {}, std::move(kept)}, limits);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

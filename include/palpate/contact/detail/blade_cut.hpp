@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Surfaces swept by an edge of fixed direction, as strips: each is a segment across the edge, and the range of the
 /// middle of the edge along itself. The newest `most` are kept. Points have no component along the edge. Neither throws
@@ -98,7 +98,7 @@ class BladeCut {
   bool known_ = false, inside_ = false;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/blade_cut.ipp>

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void BladeSlits::append(const Strip& made, double length, double largest_bend) noexcept {
   const int newest = (next_ + most - 1) % most;
@@ -162,4 +162,4 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
   return -stiffness_ * (hand - edge_);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

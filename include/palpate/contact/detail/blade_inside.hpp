@@ -11,9 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A point as seen along a line: beside the line, and along it.
 struct SeenPoint {
@@ -191,8 +189,6 @@ inline double length_behind(const ContactSurface& surface, const Vector3& a, con
   return (b - a).norm() * inside;
 }
 
-}  // namespace detail
-
 /// Length of the part of the edge from a to b that is in tissue [m]; frame of the surface. Every crossing of a line
 /// with a closed boundary enters or leaves tissue, and tissue is where more were entered than left. So two walls of a
 /// closed slit cancel, rounding moves the ends of the parts by no more than itself, and tissue that is pressed into
@@ -203,8 +199,7 @@ inline double length_behind(const ContactSurface& surface, const Vector3& a, con
 inline double length_in_tissue(const ContactSurface& surface, const Vector3& a, const Vector3& b,
                                double reach) noexcept {
   if (!((b - a).squaredNorm() < infinity)) return 0.0;  // also if an end is not a number
-  return surface.is_closed() ? detail::length_inside(surface.boundary(), a, b)
-                             : detail::length_behind(surface, a, b, reach);
+  return surface.is_closed() ? length_inside(surface.boundary(), a, b) : length_behind(surface, a, b, reach);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

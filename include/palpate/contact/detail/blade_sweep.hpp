@@ -16,8 +16,8 @@ struct BladeSweep {
 
   /// [m^2]
   double area() const noexcept { return 0.5 * (cross(b0 - a0, b1 - a0).norm() + cross(b1 - a0, a1 - a0).norm()); }
-  Box box() const noexcept {
-    Box box;
+  detail::Box box() const noexcept {
+    detail::Box box;
     for (const Vector3& x : {a0, b0, a1, b1}) box.include(x);
     return box;
   }

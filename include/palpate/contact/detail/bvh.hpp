@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Boxes over triangles, split at the median of the longest axis; leaves hold up to four triangles. Queries are O(log n
 /// + hits), do not allocate and visit triangles in a fixed order.
@@ -178,4 +178,4 @@ inline void Bvh::build(int begin, int end, const std::vector<Vector3>& centre) {
   build(middle, end, centre);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Normals of a row in the last linearisation and the one before: those used, and those that resulted.
 struct NormalHistory {
@@ -150,4 +150,4 @@ class FarthestCandidate {
   std::size_t count_ = 0;    // of the heap
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 #include <palpate/contact/detail/candidate_list.hpp>
 #include <palpate/contact/detail/surface_displacement.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// All contact points that a sphere can reach within a tick, and some more, so that the list stays valid for a while:
 /// the path of sphere and surface since then is accumulated, and the list is rebuilt when the margin is used up (as
@@ -234,7 +234,7 @@ class Candidates {
   int next_ = 0;  // next vertex of the scan
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/candidates.ipp>

@@ -6,15 +6,11 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 inline bool has_vertex(const Triangle& t, int vertex) noexcept {
   return t[0] == vertex || t[1] == vertex || t[2] == vertex;
 }
-
-}  // namespace detail
 
 PALPATE_INLINE Candidates::Candidates(ContactSamples samples, std::shared_ptr<const SubfacetCompliance> subfacet,
                                       int capacity)
@@ -287,7 +283,7 @@ PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDi
   for (int t : surface.triangles_at(sample.vertices[0])) {
     bool contains = true;
     for (std::size_t a = 1; a < 3; ++a)
-      contains = contains && (sample.weights[a] == 0.0 || detail::has_vertex(surface.triangle(t), sample.vertices[a]));
+      contains = contains && (sample.weights[a] == 0.0 || has_vertex(surface.triangle(t), sample.vertices[a]));
     if (contains && c.normal.dot(surface.normal(t)) > 0.0) return true;
   }
   const Triangle& v = surface.triangle(c.triangle);
@@ -299,4 +295,4 @@ PALPATE_INLINE bool Candidates::faces_sphere(const TissueView& tissue, SurfaceDi
   return c.normal.dot(cross(x1 - x0, x2 - x0)) > 0.0;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

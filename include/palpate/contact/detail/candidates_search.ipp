@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Points within this distance may be reached while the linearisation converges; if one were missing, the sphere could
 /// fall through it.
@@ -257,4 +257,4 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   list.farthest.replace(c.gap);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

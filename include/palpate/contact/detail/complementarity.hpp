@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Solves lambda >= 0, g = b + W lambda >= 0, lambda . g = 0 for a symmetric positive (semi)definite W of at most
 /// `capacity` rows, exactly. First by block principal pivoting (Kostreva 1978; Judice and Pires 1994): whole sets of
@@ -86,7 +86,7 @@ class ComplementarityProblem {
   double tolerance_ = 0.0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/complementarity.ipp>

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE ComplementarityProblem::ComplementarityProblem(int capacity)
     : b(at(capacity)),
@@ -177,7 +177,7 @@ PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
     forces[count++] = force;
     if (count < columns.size() && p + 1 < order_count_) continue;
     for (; count < columns.size(); ++count) columns[count] = column, forces[count] = 0.0;
-    detail::add_columns(gap, columns, forces, rows_);
+    add_columns(gap, columns, forces, rows_);
     count = 0;
   }
 }
@@ -203,13 +203,12 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
       for (int p = q + 1; p < end; ++p) x[p] -= value * column[p];
     }
     if (end < m)
-      detail::add_columns(x + end, columns(end, first), {-x[first], -x[first + 1], -x[first + 2], -x[first + 3]},
-                          m - end);
+      add_columns(x + end, columns(end, first), {-x[first], -x[first + 1], -x[first + 2], -x[first + 3]}, m - end);
   }
   for (int p = m - 1; p >= 0; --p) {
     const double* const column = &factor_[place(0, p)];
     const int n = m - p - 1;
-    x[p] = (x[p] - detail::dot(column + p + 1, x + p + 1, n)) * column[p];
+    x[p] = (x[p] - dot(column + p + 1, x + p + 1, n)) * column[p];
   }
 }
 
@@ -236,7 +235,7 @@ PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
     }
     for (int k = end; k < m; ++k) {
       const auto from = columns(k, first);
-      detail::add_columns(&factor_[place(k, k)], from, {-*from[0], -*from[1], -*from[2], -*from[3]}, m - k);
+      add_columns(&factor_[place(k, k)], from, {-*from[0], -*from[1], -*from[2], -*from[3]}, m - k);
     }
   }
 }
@@ -257,4 +256,4 @@ PALPATE_INLINE void ComplementarityProblem::factor_row(int p) noexcept {
   factor_[place(p, p)] = inverse_root(pivot, i);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// What changes, depths and errors of a contact force are relative to: its length, or half of the sum of the normal
 /// forces where that is more. In a hole or a fold the normal forces cancel, and what is left of them is no scale.
@@ -178,7 +178,7 @@ class ContactRows {
   std::vector<int> slot_;  // scratch per vertex: -1 between calls
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/contact_rows.ipp>

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capacity)
     : capacity_(capacity),
@@ -19,7 +19,7 @@ PALPATE_INLINE ContactRows::ContactRows(int vertices, double friction, int capac
       compliance_(capacity),
       rows_(at(capacity)),
       candidate_(at(capacity)),
-      stored_(capacity, detail::contact_kernels()),
+      stored_(capacity, contact_kernels()),
       forces_(capacity),
       moved_(capacity),
       in_axes_(friction > 0.0 ? 9 * stored_.stride() : 0),
@@ -301,4 +301,4 @@ PALPATE_INLINE void ContactRows::place_points() noexcept {
   for (int i = 0; i < count_; ++i) candidate_[at(i)]->point = rows_[at(i)].point;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

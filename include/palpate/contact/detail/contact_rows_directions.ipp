@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A point at the rim of a contact may press in every other tick: while its tool presses, it keeps its anchor over one
 /// tick without force. With a new anchor each time, its friction force would come and go, and with it the normal
@@ -148,4 +148,4 @@ PALPATE_INLINE bool ContactRows::correct_normals(std::span<const ContactTool> to
   return problem_.solve_again();
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

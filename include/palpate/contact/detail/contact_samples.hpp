@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A material point of the contact surface: three vertices, and the weights that interpolate their displacement and
 /// distribute its force.
@@ -80,7 +80,7 @@ double longest_edge(const ContactSurface& surface) noexcept;
 /// it.
 void require_dense_points(const ContactSurface& surface, double radius);
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/contact_samples.ipp>

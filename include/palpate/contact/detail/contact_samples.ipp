@@ -13,9 +13,7 @@
 #include <numeric>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Sum of the absolute differences of the weights.
 inline double difference(const ContactSample& a, const ContactSample& b) noexcept {
@@ -39,8 +37,6 @@ inline double unloaded_length(const ContactSurface& surface, std::int64_t a, std
   if (x.size() != surface.positions().size()) return infinity;
   return (x[static_cast<std::size_t>(a)] - x[static_cast<std::size_t>(b)]).norm();
 }
-
-}  // namespace detail
 
 /// Places the samples, chooses those of every level and divides the surface among them.
 class ContactSamples::Builder {
@@ -249,7 +245,7 @@ class ContactSamples::Builder {
   }
   double length(int a, int b) const noexcept { return (surface_.position(a) - surface_.position(b)).norm(); }
   int parts(const Triangle& t) const noexcept {
-    return detail::subdivision(std::max({length(t[0], t[1]), length(t[1], t[2]), length(t[2], t[0])}), made_.finest_);
+    return subdivision(std::max({length(t[0], t[1]), length(t[1], t[2]), length(t[2], t[0])}), made_.finest_);
   }
 
   void add_triangle(int number) {
@@ -273,7 +269,7 @@ class ContactSamples::Builder {
   void add_edge(int a, int b, int c) {
     const auto [place, is_new] = edges_.try_emplace(edge(a, b), Edge{a, made_.count(), 0});
     if (!is_new) return;
-    const int n = place->second.parts = detail::subdivision(length(a, b), made_.finest_);
+    const int n = place->second.parts = subdivision(length(a, b), made_.finest_);
     for (int k = 1; k < n; ++k)
       made_.samples_.push_back({{a, b, c}, {1.0 - static_cast<double>(k) / n, static_cast<double>(k) / n, 0.0}});
   }
@@ -358,7 +354,7 @@ PALPATE_INLINE int ContactSamples::nearest(const ContactSurface& surface, const 
   double least = 1.0;  // with half of the weight on other vertices it is a different place
   for (const int t : surface.triangles_at(wanted.vertices[0]))
     for (int s = first_of(t); s < first_of(t + 1) && level_of(s) >= level; ++s)
-      if (const double off = detail::difference((*this)[s], wanted); off < least) least = off, best = s;
+      if (const double off = difference((*this)[s], wanted); off < least) least = off, best = s;
   return best;
 }
 
@@ -394,7 +390,7 @@ PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double r
   const std::string bound = ", more than " + std::to_string(ContactSamples::maximum_subdivision) +
                             " radii of the smallest tool (" + number(radius) +
                             " m): it would fall through; the ids are vertices of the surface";
-  const double unloaded = detail::unloaded_length(surface, problem.ids[0], problem.ids[1]);
+  const double unloaded = unloaded_length(surface, problem.ids[0], problem.ids[1]);
   if (unloaded <= most) {
     problem.what = "the scene's loads (" + surface.unloaded().loads +
                    ") stretch an edge of the touchable surface from " + number(unloaded) + " m to " +
@@ -409,4 +405,4 @@ PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double r
   raise(std::move(problem));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

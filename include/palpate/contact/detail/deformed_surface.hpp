@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// From the closest point of a deformed triangle to a position. `subfacet` adds the dents of contact points at
 /// vertices; null: none.
@@ -56,4 +56,4 @@ inline ContactSurface::Closest closest_deformed(const TissueView& tissue, Surfac
   return best;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

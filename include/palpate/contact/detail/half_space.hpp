@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A point of a surface, and the half-space that the body is near it.
 struct HalfSpacePoint {
@@ -99,7 +99,7 @@ inline Matrix3 supported_compliance(const HalfSpacePoint& p, const HalfSpacePoin
 class HalfSpaceLoads {
  public:
   /// Allocates; for set-up.
-  explicit HalfSpaceLoads(int capacity, const any_flags::ContactKernels& kernels = detail::contacts_here)
+  explicit HalfSpaceLoads(int capacity, const any_flags::ContactKernels& kernels = contacts_here)
       : kernels_(&kernels),
         numbers_(numbers * lanes * any_flags::contact_groups(capacity), 1.0) {}  // the kernel divides by lengths
 
@@ -134,4 +134,4 @@ class HalfSpaceLoads {
   std::vector<double> numbers_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The fields of Boussinesq (normal force) and Cerruti (tangential force) in a half-space (Johnson, Contact Mechanics,
 /// 1985, 3.2 and 3.6), written without axes in the surface. Offsets are from the point of the force and must not be
@@ -107,4 +107,4 @@ inline Matrix3 HalfSpaceField::traction(const Vector3& offset, const Vector3& fa
   return f;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -11,15 +11,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A direction that separates a convex hull from a triangle, best the one of their closest points.
 struct Separation {
   Vector3 normal = Vector3::Zero();  ///< unit, from the triangle to the hull; zero if they overlap
   double distance = 0.0;  ///< between them along the normal [m]: never more than their distance; 0 if they overlap
 };
-
-namespace detail {
 
 /// The point of a set that is lowest along a direction.
 inline const Vector3& lowest(std::span<const Vector3> points, const Vector3& direction) noexcept {
@@ -89,19 +87,17 @@ class Simplex {
   std::size_t count_ = 0;
 };
 
-}  // namespace detail
-
 /// The separation of the hull of some points (1 to 64) from a triangle (Gilbert, Johnson and Keerthi 1988; the closest
 /// point of a simplex from the closest points of its triangles). At most 32 rounds, each of the work of one support
 /// query; a result of fewer rounds than needed is still a lower bound. No allocation.
 inline Separation separate(std::span<const Vector3> points, const std::array<Vector3, 3>& corner) noexcept {
-  detail::Simplex simplex;
+  Simplex simplex;
   Separation best;
   Vector3 v = simplex.add(points.front() - corner[0]);
   for (int round = 0; round < 32; ++round) {
     const double length = v.norm();
     if (simplex.contains_origin() || !(length > 0.0)) return {};
-    const Vector3 w = detail::lowest(points, v) - detail::lowest(corner, -v);
+    const Vector3 w = lowest(points, v) - lowest(corner, -v);
     const double least = v.dot(w) / length;
     if (least > best.distance) best = {v / length, least};
     if (length - least <= 1e-12 * length) break;
@@ -125,8 +121,6 @@ struct HullPath {
     }
   }
 };
-
-namespace detail {
 
 inline std::array<Vector3, 3> corners_of(const ContactSurface& surface, int t) noexcept {
   const Triangle& v = surface.triangle(t);
@@ -153,8 +147,6 @@ inline bool approaches(const HullPath& hull, std::span<const Vector3> now, const
   return false;
 }
 
-}  // namespace detail
-
 /// The fraction of the path after which the rounded hull first touches a triangle from its outer side, to which
 /// `normal` points; infinity when it does not before `until`. Conservative advancement (Mirtich 1996): every step ends
 /// where a direction that separates hull and triangle has less than the radius left, so no step passes the first
@@ -165,18 +157,18 @@ inline double hull_meets_triangle(const HullPath& hull, double radius, const std
   const double touching = 1e-7 * radius;  // rest of a gap
   double lowest = infinity;
   for (std::size_t v = 0; v < hull.count; ++v) lowest = std::min(lowest, normal.dot(hull.start[v] - corner[0]));
-  double at = lowest >= radius ? detail::until_touching(hull, radius, corner, normal) : 0.0;
+  double at = lowest >= radius ? until_touching(hull, radius, corner, normal) : 0.0;
   std::array<Vector3, ConvexHull::maximum_points> now;
   for (int k = 0; k < steps && at <= until; ++k) {
     for (std::size_t v = 0; v < hull.count; ++v) now[v] = hull.start[v] + at * hull.path[v];
     const std::span<const Vector3> points(now.data(), hull.count);
     const Separation apart = separate(points, corner);
-    if (!(apart.distance > 0.0)) return detail::approaches(hull, points, normal, 2.0 * touching) ? at : infinity;
+    if (!(apart.distance > 0.0)) return approaches(hull, points, normal, 2.0 * touching) ? at : infinity;
     if (apart.distance - radius <= touching) {
       if (!(apart.normal.dot(normal) > 0.0)) return infinity;  // from behind
-      if (detail::approaches(hull, points, apart.normal, 2.0 * touching)) return at;
+      if (approaches(hull, points, apart.normal, 2.0 * touching)) return at;
     }
-    const double next = detail::until_touching(hull, radius, corner, apart.normal);
+    const double next = until_touching(hull, radius, corner, apart.normal);
     if (!(next > at)) return infinity;  // it touches, and moves away
     at = next;
   }
@@ -203,8 +195,7 @@ inline double first_touch(const ContactTool& tool, const ContactSurface& surface
     const Vector3 path = end + rotation_end * tool.hull->middle() - middle;
     double first = 1.0;
     surface.bvh().visit_along(middle, path, tool.hull->radius() + radius, [&](int t) {
-      first =
-          std::min(first, hull_meets_triangle(hull, radius, detail::corners_of(surface, t), surface.normal(t), first));
+      first = std::min(first, hull_meets_triangle(hull, radius, corners_of(surface, t), surface.normal(t), first));
       return first;
     });
     if (first < 1.0) return (k - 1 + first) / parts;
@@ -213,8 +204,6 @@ inline double first_touch(const ContactTool& tool, const ContactSurface& surface
   }
   return 1.0;
 }
-
-namespace detail {
 
 /// The displacement out of the surface that the deepest vertex of a hull needs, zero if none is deeper than the radius.
 inline Vector3 out_of_vertices(const ContactTool& tool, const ContactSurface& surface) noexcept {
@@ -254,19 +243,17 @@ inline Vector3 out_of_triangles(const ContactTool& tool, const ContactSurface& s
   return move;
 }
 
-}  // namespace detail
-
 /// Moves a convex tool beside the resting surface: out by its deepest vertex, then by the triangle that is deepest in
 /// its rounded faces, at most eight times. Cost: closest points for its vertices, and the triangles near it.
 inline void place_hull_beside(ContactTool& tool, const ContactSurface& surface) noexcept {
   const auto around = surface.closest_of_body(tool.middle());
   if (around.triangle >= 0 && around.distance >= tool.core_radius() + tool.radius) return;
   for (int round = 0; round < 8; ++round) {
-    Vector3 move = detail::out_of_vertices(tool, surface);
-    if (max_abs(move) == 0.0) move = detail::out_of_triangles(tool, surface);
+    Vector3 move = out_of_vertices(tool, surface);
+    if (max_abs(move) == 0.0) move = out_of_triangles(tool, surface);
     if (max_abs(move) == 0.0) return;
     tool.proxy += move;
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -8,7 +8,7 @@
 #include <array>
 #include <numbers>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The level of the contact samples for every tool, so that a press has about the same number of points on any mesh and
 /// at any depth. A tool has a whole level as long as the points in the area that presses are 0.7 to 1.6 times the
@@ -114,7 +114,7 @@ class PointLevels {
   Limits limits_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/point_levels.ipp>

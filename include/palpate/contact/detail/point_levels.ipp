@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const std::array<Size, maximum_tools>& sizes,
                                             const std::array<bool, maximum_tools>& near,
@@ -190,4 +190,4 @@ PALPATE_INLINE void PointLevels::end_tick(const std::array<int, maximum_tools>& 
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

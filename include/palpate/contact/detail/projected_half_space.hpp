@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Why the table below is not, or not completely, right at a vertex.
 enum class HalfSpaceMark : std::uint8_t {
@@ -99,4 +99,4 @@ inline std::size_t ProjectedHalfSpace::bytes() const noexcept {
          blocks_.row_start.size() * sizeof(Index) + blocks_.column.size() * (sizeof(int) + sizeof(Matrix3));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

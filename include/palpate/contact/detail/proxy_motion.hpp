@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Moves the proxies of all tools: first with their devices, then from linearisation to linearisation to the positions
 /// of the solution. Reports how far the next step goes and how much the forces changed in the last. No allocation.
@@ -83,7 +83,7 @@ class ProxyMotion {
   bool clipped_ = false, arrived_ = true, took_whole_step_ = false;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/proxy_motion.ipp>

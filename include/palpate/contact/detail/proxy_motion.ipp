@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void ProxyMotion::rotate(ContactTool& tool, double part) noexcept {
   const Matrix3 goal = tool.goal_rotation();
@@ -155,4 +155,4 @@ PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged, bool pres
   return alternates(tools, scale);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The displacement of point p per force on point q [m/N], 3 x 3, for up to `capacity` points at a time: J_p C J_q^T,
 /// and what SubfacetCompliance adds to it. That of a point per force on itself has no self compliance of the
@@ -214,7 +214,7 @@ class RowCompliance {
   std::vector<double> tools_, sums_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/row_compliance.ipp>

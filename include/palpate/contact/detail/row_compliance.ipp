@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE PointCompliance::PointCompliance(int capacity)
     : block_(at(capacity) * (at(capacity) + 1) / 2),
@@ -80,4 +80,4 @@ PALPATE_INLINE void PointCompliance::renew(const TissueView& tissue, const Candi
   of_state_[at(slot)] = revision_;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

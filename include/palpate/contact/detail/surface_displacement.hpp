@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A force on a point of the surface.
 struct PointLoad {
@@ -157,7 +157,7 @@ class SurfaceDisplacement {
   bool only_presses_ = false;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/surface_displacement.ipp>

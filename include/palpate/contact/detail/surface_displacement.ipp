@@ -8,12 +8,12 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE SurfaceDisplacement::SurfaceDisplacement(int vertices, int capacity, int number)
     : forces_(static_cast<std::size_t>(capacity)),
       loads_(static_cast<std::size_t>(capacity)),
-      half_space_(capacity, detail::contact_kernels()),
+      half_space_(capacity, contact_kernels()),
       sample_(static_cast<std::size_t>(capacity), -1),
       shown_(static_cast<std::size_t>(vertices)),
       loaded_(static_cast<std::size_t>(vertices)),
@@ -264,4 +264,4 @@ PALPATE_INLINE double SurfaceDisplacement::reach(const TissueView& tissue) noexc
   return std::max(std::min(bounded, 2.0 * loaded), longest_path());
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The fraction of `path` at which a sphere whose centre moves from `from` along `path` comes within `radius` of a
 /// point; infinity when it does not, or moves away from it.
@@ -73,8 +73,6 @@ inline double first_touch(const ContactSurface& surface, const Vector3& from, co
   return first;
 }
 
-namespace detail {
-
 /// Centres of the spheres that represent a capsule in queries of single points: the ends, and between them at most a
 /// radius apart. Calls look(coordinate on the axis from the middle [m]) for each.
 template <class Look>
@@ -86,8 +84,6 @@ void for_each_sphere(const ContactTool& tool, Look&& look) {
   const int n = 2 * static_cast<int>(std::ceil(tool.half_length / tool.radius));
   for (int k = 0; k <= n; ++k) look(tool.half_length * (2.0 * k / n - 1.0));
 }
-
-}  // namespace detail
 
 /// Places the proxy where the tool does not touch the resting surface: at the position if it is free there, otherwise
 /// next to the closest point; a capsule is moved by the displacement that its deepest sphere needs, a few times, a
@@ -102,7 +98,7 @@ inline void place_beside(ContactTool& tool, const ContactSurface& surface, const
   for (int round = 0; round < (tool.half_length > 0.0 ? 4 : 1); ++round) {
     Vector3 move = Vector3::Zero();
     double deepest = tool.radius;
-    detail::for_each_sphere(tool, [&](double s) {
+    for_each_sphere(tool, [&](double s) {
       const Vector3 centre = tool.proxy + s * axis;
       const auto closest = surface.closest_of_body(centre);
       if (closest.distance >= deepest) return;
@@ -123,7 +119,7 @@ inline void sweep(ContactTool& tool, const ContactSurface& surface, const Vector
   if (tool.hull != nullptr)
     part = first_touch(tool, surface, from, position);
   else
-    detail::for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
+    for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
       part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));
     });
   tool.proxy = from + part * path;
@@ -147,4 +143,4 @@ void for_each_probe(const ContactTool& tool, Look&& look) {
   look(tool.half_length * tool.own_axis);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,6 +9,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 using Triangle = std::array<int, 3>;
 
+namespace detail {
+
 /// Location of a closest point on a triangle: inside, on edge (i, i + 1) or at vertex i.
 enum class TriangleFeature : std::uint8_t { face, edge01, edge12, edge20, vertex0, vertex1, vertex2 };
 
@@ -27,6 +29,8 @@ TrianglePoint closest_on_edges(const Vector3& p, const std::array<Vector3, 3>& c
 /// The point of triangle (a, b, c) closest to p (Ericson, Real-Time Collision Detection, 5.1.5). For triangles of zero
 /// area it is a point of one of their edges. About 40 flops, no allocation.
 TrianglePoint closest_point(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) noexcept;
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE double closest_on_segment(const Vector3& p, const Vector3& a, const Vector3& b) noexcept {
   const Vector3 ab = b - a;
@@ -67,4 +67,4 @@ PALPATE_INLINE TrianglePoint closest_point(const Vector3& p, const Vector3& a, c
   return {{1.0 - v - w, v, w}, TriangleFeature::face};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

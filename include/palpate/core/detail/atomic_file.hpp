@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Writes under a unique name, `<path>.tmp-<16 hexadecimal digits>`, and renames at the end, which replaces an older
 /// file atomically: a reader of `path` finds either the old file or the new one, and of several writers the last one
@@ -54,7 +54,7 @@ class AtomicFile {
   void remove_leftovers() const;
 
   std::string path_, temporary_, error_;
-  detail::File file_;
+  File file_;
   bool open_ = false;  // there is a temporary file
 };
 
@@ -65,7 +65,7 @@ inline AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     errno = 0;
     file_.reset(platform::create_new_file(temporary_));
     const int code = errno;
-    if (!file_) error_ = detail::system_message(code);
+    if (!file_) error_ = system_message(code);
     if (code != EEXIST) break;
   }
   open_ = file_ != nullptr;
@@ -74,7 +74,7 @@ inline AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 inline bool AtomicFile::commit() {
   errno = 0;
   if (std::fclose(file_.release()) != 0) {
-    error_ = detail::system_message(errno);
+    error_ = system_message(errno);
     return false;
   }
   std::error_code problem;
@@ -122,4 +122,4 @@ inline void AtomicFile::remove_leftovers() const {
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -38,12 +38,12 @@ class BinaryWriter {
  public:
   explicit BinaryWriter(std::FILE* file) : file_(file) {}
 
-  template <HashableBytes T>
+  template <detail::HashableBytes T>
   void value(const T& v) noexcept {
     bytes(&v, sizeof v);
   }
   /// The number of entries, then the entries.
-  template <HashableBytes T>
+  template <detail::HashableBytes T>
   void array(std::span<const T> values) noexcept {
     value(static_cast<std::uint64_t>(values.size()));
     bytes(values.data(), values.size_bytes());
@@ -61,10 +61,12 @@ class BinaryWriter {
   void bytes(const void* data, std::size_t size) noexcept;
 
   std::FILE* file_;
-  ContentHash hash_;
+  detail::ContentHash hash_;
   std::uint64_t written_ = 0;
   int error_ = no_error;
 };
+
+namespace detail {
 
 /// Why a reader stopped.
 enum class ReadFailure : std::uint8_t {
@@ -74,33 +76,35 @@ enum class ReadFailure : std::uint8_t {
   unfit,    ///< the numbers belong to another structure
 };
 
+}  // namespace detail
+
 /// Reads the output of a BinaryWriter into arrays whose sizes the caller knows: no allocation size is ever taken from a
 /// file. After the first failure nothing more is read; the values read are valid only if the digest matches.
 class BinaryReader {
  public:
   explicit BinaryReader(std::FILE* file) : file_(file) {}
 
-  template <HashableBytes T>
+  template <detail::HashableBytes T>
   bool value(T& v) noexcept {
     return bytes(&v, sizeof v);
   }
   /// Reads a value that must equal `wanted`; if it does not, sets the failure `otherwise`.
-  template <HashableBytes T>
-  bool expect(const T& wanted, ReadFailure otherwise) noexcept {
+  template <detail::HashableBytes T>
+  bool expect(const T& wanted, detail::ReadFailure otherwise) noexcept {
     T found{};
     if (!value(found)) return false;
     if (std::memcmp(&found, &wanted, sizeof wanted) != 0) failure_ = otherwise;
     return good();
   }
   /// Fills an array; its length in the file must be the same.
-  template <HashableBytes T>
+  template <detail::HashableBytes T>
   bool array(std::span<T> values) noexcept {
-    return expect(static_cast<std::uint64_t>(values.size()), ReadFailure::damaged) &&
+    return expect(static_cast<std::uint64_t>(values.size()), detail::ReadFailure::damaged) &&
            bytes(values.data(), values.size_bytes());
   }
 
-  bool good() const noexcept { return failure_ == ReadFailure::none; }
-  ReadFailure failure() const noexcept { return failure_; }
+  bool good() const noexcept { return failure_ == detail::ReadFailure::none; }
+  detail::ReadFailure failure() const noexcept { return failure_; }
   std::uint64_t digest() const noexcept { return hash_.digest(); }
   std::uint64_t bytes_read() const noexcept { return read_; }
 
@@ -108,9 +112,9 @@ class BinaryReader {
   bool bytes(void* data, std::size_t size) noexcept;
 
   std::FILE* file_;
-  ContentHash hash_;
+  detail::ContentHash hash_;
   std::uint64_t read_ = 0;
-  ReadFailure failure_ = ReadFailure::none;
+  detail::ReadFailure failure_ = detail::ReadFailure::none;
 };
 
 namespace detail {
@@ -157,7 +161,7 @@ inline bool BinaryReader::bytes(void* data, std::size_t size) noexcept {
   for (std::size_t n = 0; size > 0 && good(); to += n, size -= n) {
     n = std::min(size, detail::binary_chunk);
     if (std::fread(to, 1, n, file_) != n) {
-      failure_ = ReadFailure::ended;
+      failure_ = detail::ReadFailure::ended;
       break;
     }
     hash_.add(std::span<const char>(to, n));

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <span>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// An axis-aligned box [m]; empty (low > high) until it includes something.
 struct Box {
@@ -58,4 +58,4 @@ inline Box box_of(std::span<const Vector3> points) noexcept {
   return box;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Types without padding, whose bytes are their value. Floating-point types are included: different hashes for 0 and -0
 /// are harmless.
@@ -81,4 +81,4 @@ inline void ContentHash::add_bytes(const void* data, std::size_t size) noexcept 
   lanes_ = lanes;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

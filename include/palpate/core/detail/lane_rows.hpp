@@ -138,22 +138,22 @@ struct RowTranspose;
 
 }}}  // namespace palpate::detail
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Reads x, y, z of N rows of four numbers: lane i gets the row that starts at rows[row[i]]. Transposed in registers.
 template <class S, int N, class Id>
 PALPATE_ALWAYS_INLINE Triple<Lanes<S, N>> load_rows(const S* rows, const Id* row) noexcept {
-  constexpr int W = detail::transposed_at_once<S, N>;
+  constexpr int W = transposed_at_once<S, N>;
   if constexpr (W < 4) {
-    return detail::load_rows_by_loops<S, N>(rows, row);
+    return load_rows_by_loops<S, N>(rows, row);
   } else {
     Triple<Lanes<S, N>> t;
     for (int first = 0; first < N; first += W) {
-      detail::LaneVector<S, W> x, y, z;
-      detail::RowTranspose<S, W>::load(rows, row + first, x, y, z);
-      detail::set_part<W>(t.x, first, x);
-      detail::set_part<W>(t.y, first, y);
-      detail::set_part<W>(t.z, first, z);
+      LaneVector<S, W> x, y, z;
+      RowTranspose<S, W>::load(rows, row + first, x, y, z);
+      set_part<W>(t.x, first, x);
+      set_part<W>(t.y, first, y);
+      set_part<W>(t.z, first, z);
     }
     return t;
   }
@@ -163,13 +163,12 @@ PALPATE_ALWAYS_INLINE Triple<Lanes<S, N>> load_rows(const S* rows, const Id* row
 /// one after the other, in the same order in every call.
 template <class S, int N, class Id>
 PALPATE_ALWAYS_INLINE void add_rows(S* rows, const Id* row, const Triple<Lanes<S, N>>& t) noexcept {
-  constexpr int W = detail::transposed_at_once<S, N>;
+  constexpr int W = transposed_at_once<S, N>;
   if constexpr (W < 4)
-    detail::add_rows_by_loops(rows, row, t);
+    add_rows_by_loops(rows, row, t);
   else
     for (int first = 0; first < N; first += W)
-      detail::RowTranspose<S, W>::add(rows, row + first, detail::part<W>(t.x, first), detail::part<W>(t.y, first),
-                                      detail::part<W>(t.z, first));
+      RowTranspose<S, W>::add(rows, row + first, part<W>(t.x, first), part<W>(t.y, first), part<W>(t.z, first));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

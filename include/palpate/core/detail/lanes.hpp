@@ -11,9 +11,7 @@
 #include <iterator>
 #include <type_traits>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PALPATE_LANES_BY_LOOPS)
 
@@ -69,12 +67,10 @@ inline void select_lanes(const I& mask, const V& yes, const V& no, V& to) noexce
 
 #endif
 
-}  // namespace detail
-
 /// Result of a comparison of lanes: true or false per lane.
 template <class S, int N>
 struct LaneMask {
-  detail::LaneVector<std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>, N> v;  ///< -1 or 0
+  LaneVector<std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>, N> v;  ///< -1 or 0
 
   bool operator[](int i) const noexcept { return v[i] != 0; }
   PALPATE_ALWAYS_INLINE friend LaneMask operator&(const LaneMask& a, const LaneMask& b) noexcept { return {a.v & b.v}; }
@@ -93,11 +89,11 @@ struct Lanes {
   using Mask = LaneMask<S, N>;
   static constexpr int size = N;
 
-  alignas(sizeof(S) * N) detail::LaneVector<S, N> v;
+  alignas(sizeof(S) * N) LaneVector<S, N> v;
 
   Lanes() noexcept = default;
   /// The same number in all lanes. Implicit, so that a kernel reads as it does with one number.
-  PALPATE_ALWAYS_INLINE Lanes(S x) noexcept : v(x - detail::LaneVector<S, N>{}) {}
+  PALPATE_ALWAYS_INLINE Lanes(S x) noexcept : v(x - LaneVector<S, N>{}) {}
 
   /// Reads N consecutive numbers; any alignment.
   PALPATE_ALWAYS_INLINE static Lanes load(const S* from) noexcept {
@@ -132,7 +128,7 @@ struct Lanes {
   /// `yes` where the mask is true, `no` elsewhere.
   PALPATE_ALWAYS_INLINE friend Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) noexcept {
     Lanes r;
-    detail::select_lanes(mask.v, yes.v, no.v, r.v);
+    select_lanes(mask.v, yes.v, no.v, r.v);
     return r;
   }
 
@@ -199,8 +195,6 @@ PALPATE_ALWAYS_INLINE bool all(const LaneMask<S, N>& mask) noexcept {
   return !any(!mask);
 }
 
-namespace detail {
-
 /// Cube root of x >= 1/8, accurate to rounding: Halley's method from (1 + 2x) / (2 + x), whose error is 18 % or less up
 /// to x = 8. Each iteration cubes the error. Larger numbers, and NaN, use std::cbrt.
 template <class S, int N>
@@ -214,6 +208,4 @@ PALPATE_ALWAYS_INLINE Lanes<S, N> cube_root(const Lanes<S, N>& x) noexcept {
   return y;
 }
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -4,7 +4,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The vector, shortened to length `most` >= 0 if it is longer; its direction is kept. `shortened` reports whether it
 /// was. Works for any finite vector: it is divided by its largest component first, because the square of 1e308 is
@@ -20,4 +20,4 @@ inline Vector3 limit_length(const Vector3& v, double most, bool& shortened) noex
   return scaled * (most / length);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// K, symmetric positive definite, becomes [K + P A P^T, P B; B^T P^T, D]: rows P change, and new rows are added as a
 /// border. With H = P^T K^-1 P the new inverse is, by block elimination of the new rows and the formula of Sherman,
@@ -88,4 +88,4 @@ inline double BorderedUpdate::smallest_eigenvalue(const Eigen::LLT<MatrixX>& lef
   return std::min(value, 1.0);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -30,7 +30,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Stiffness of the supported part of a topology, factorised with some nodes kept, and the compliance among these.
 template <Element E>
@@ -144,7 +144,7 @@ class CutBase {
     report.probe_error = probe_error(FreeStiffness(k, conditions), solver);
     limits.advance("checks", 0.5);
     report.condition_estimate = free_norm(k, conditions) * inverse_norm_estimate(solver);
-    detail::judge_accuracy(false, report);
+    judge_accuracy(false, report);
   }
   static EssentialConditions constrained_conditions(const CutTopology<E>& topology, const CutPhysics<E>& physics,
                                                     const std::vector<NodeId>& node_map, Index count) {
@@ -202,4 +202,4 @@ class CutBase {
   VectorX displacement_, kept_load_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The compliance of points finer than facets after cuts: copies of a split node have that of the node, and nodes that
 /// were inside have none. Nodes that were split or lost an element are marked as changed. `nodes`: of the vertices,
@@ -41,4 +41,4 @@ std::shared_ptr<const SubfacetCompliance> half_space_after_cuts(const std::share
   return std::make_shared<SubfacetCompliance>(*whole, copies);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

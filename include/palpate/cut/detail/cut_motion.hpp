@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A body after cuts, for its factor.
 struct CutBody {
@@ -94,7 +94,7 @@ class CutForces {
   /// Those after a cut; `rest` has the elements that are left. Throws as make_energy_forces.
   CutForces after(const CutTopology<E>&, HyperelasticBody<E, M> rest, const SetupLimits& limits) const {
     CutForces made;
-    made.made_ = detail::make_energy_forces<S>(std::move(rest), limits);
+    made.made_ = make_energy_forces<S>(std::move(rest), limits);
     return made;
   }
   /// For a motion.
@@ -156,7 +156,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   CutQuasiNewtonMotion(HyperelasticBody<E, M> body, const CutTopology<E>& topology, const Scene& scene,
                        const QuasiNewtonParameters& parameters, const SetupLimits& limits)
       : parameters_(parameters), limits_(limits), body_(std::move(body)) {
-    const DeformableBody whole = detail::body_with_mass(body_.rest, scene, limits_);
+    const DeformableBody whole = body_with_mass(body_.rest, scene, limits_);
     prescribed_ = whole.conditions.prescribed;
     load_ = whole.load;
     factor_ = std::make_shared<CutFactor>(std::make_shared<RenewableFactor>(
@@ -324,7 +324,7 @@ class CutQuasiNewtonMotion final : public CutMotion<E> {
   bool was_cut_ = false;  // since the last step
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/cut/detail/cut_motion.ipp>

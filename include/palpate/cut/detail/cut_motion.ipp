@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE CutFactor::CutFactor(std::shared_ptr<RenewableFactor> base)
     : base_(std::move(base)), whole_(base_), thread_([this] { compute(); }) {
@@ -97,7 +97,7 @@ PALPATE_INLINE void CutFactor::take_renewed() noexcept {
 
 PALPATE_INLINE void CutFactor::compute() noexcept {
   // No memory: the last factor stays in use.
-  if (!detail::attempt([&] { request_.made = make(); })) request_.made.reset();
+  if (!attempt([&] { request_.made = make(); })) request_.made.reset();
 }
 
 PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
@@ -106,4 +106,4 @@ PALPATE_INLINE std::shared_ptr<RenewableFactor> CutFactor::make() const {
   return made->set_mass(request_.mass) ? made : nullptr;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Orders from any thread, and blade sweeps from the thread that ticks, which never waits. `take` returns all waiting
 /// orders; they count as open until `done`.
@@ -118,4 +118,4 @@ class CutServed {
   int waited_ = 0;          // ticks
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

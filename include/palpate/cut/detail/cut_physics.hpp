@@ -25,6 +25,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Loads of a scene without gravity and initial strains, by element, so that an element that leaves the body takes its
 /// loads with it. Point loads stay with the node to which they were applied.
 template <Element E>
@@ -63,7 +65,7 @@ struct ElementLoads {
                     const Vector3& traction, double pressure) {
     for (const auto& face : resolve_faces(mesh, boundary, where))
       with_face_element<E>(face.nodes.size(), [&]<FaceElement F>() {
-        const auto x = palpate::face_nodes<F>(mesh, face);
+        const auto x = detail::face_nodes<F>(mesh, face);
         const FaceNodes<F> f = shape_areas<F>(x) * traction.transpose() - pressure * shape_area_vectors<F>(x);
         const auto& nodes = mesh.elements[static_cast<std::size_t>(face.element)];
         for (int a = 0; a < F::nodes; ++a) {
@@ -74,29 +76,33 @@ struct ElementLoads {
   }
 };
 
+}  // namespace detail
+
 /// Material and loads by element: those of ElementLoads with gravity and initial strains.
 template <Element E>
-requires(!HasSmoothedStrain<E>) struct CutPhysics : ElementLoads<E> {
-  using ElementLoads<E>::load;
-  using ElementLoads<E>::nodal_load;
+requires(!detail::HasSmoothedStrain<E>) struct CutPhysics : detail::ElementLoads<E> {
+  using detail::ElementLoads<E>::load;
+  using detail::ElementLoads<E>::nodal_load;
   Body<E> body;        ///< its mesh has the nodes and elements as given
   VectorX prescribed;  ///< displacements, 3 per given node [m]
 
   /// Loads of a scene: gravity in the frame of the mesh, body loads, tractions, pressures, initial strains. Throws as
   /// the conditions of a scene. O(elements).
   CutPhysics(Body<E> given, const std::vector<BoundaryFace>& boundary, const Scene& scene)
-      : ElementLoads<E>(given.mesh, boundary, scene), body(std::move(given)) {
-    body.initial_strain = initial_strains_by_region(body.mesh, scene);
-    prescribed = resolve_essential(body.mesh, boundary, scene).prescribed;
+      : detail::ElementLoads<E>(given.mesh, boundary, scene), body(std::move(given)) {
+    body.initial_strain = detail::initial_strains_by_region(body.mesh, scene);
+    prescribed = detail::resolve_essential(body.mesh, boundary, scene).prescribed;
     add_weight(scene);
   }
 
   /// Element stiffness [N/m] at the rest positions of the nodes.
-  ElementStiffness<E> stiffness(Index e) const {
-    return element_stiffness<E>(nodes_of_element(e), body.elasticity_of(e));
+  detail::ElementStiffness<E> stiffness(Index e) const {
+    return detail::element_stiffness<E>(nodes_of_element(e), body.elasticity_of(e));
   }
   /// Mass of an element [kg].
-  double mass(Index e) const { return body.density[body.region_of(e)] * shape_volumes<E>(nodes_of_element(e)).sum(); }
+  double mass(Index e) const {
+    return body.density[body.region_of(e)] * detail::shape_volumes<E>(nodes_of_element(e)).sum();
+  }
   /// The load of one element as a column, x y z per node.
   Eigen::Matrix<double, 3 * E::nodes, 1> load_of(Index e) const {
     Eigen::Matrix<double, 3 * E::nodes, 1> f;
@@ -116,9 +122,9 @@ requires(!HasSmoothedStrain<E>) struct CutPhysics : ElementLoads<E> {
         raise(SetupErrorKind::bad_density,
               "there is gravity, but region '" + body.mesh.region_names[region] + "' has no density");
       ElementNodes<E>& f = load[static_cast<std::size_t>(e)];
-      if (!weight.isZero(0.0)) f += shape_volumes<E>(nodes_of_element(e)) * weight.transpose();
+      if (!weight.isZero(0.0)) f += detail::shape_volumes<E>(nodes_of_element(e)) * weight.transpose();
       if (!body.initial_strain[region].isZero(0.0))
-        f += initial_strain_load<E>(nodes_of_element(e), body.elasticity_of(e), body.initial_strain[region]);
+        f += detail::initial_strain_load<E>(nodes_of_element(e), body.elasticity_of(e), body.initial_strain[region]);
     }
   }
 };

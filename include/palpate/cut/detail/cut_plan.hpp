@@ -18,7 +18,7 @@
 #include <map>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The small linear problem of one cut. Refers to the arguments of its constructor.
 template <Element E>
@@ -128,4 +128,4 @@ class CutPlan {
   std::map<NodeId, std::array<Index, 3>> places_;  // of nodes with promoted or fresh dofs
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

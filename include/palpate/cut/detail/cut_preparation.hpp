@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A body in a local frame, with its touchable faces and the nodes to be cut.
 template <Element E>
@@ -31,8 +31,6 @@ struct CutPreparation {
   CutSurface<E> touchable;
   std::vector<NodeId> cuttable;  ///< sorted
 };
-
-namespace detail {
 
 /// Extends the original ids: a node copied by the topology has the original id of its source.
 template <Element E>
@@ -54,20 +52,18 @@ void add_copied_nodes(const CutTopology<E>& topology, Index admitted_nodes, Orig
   raise(std::move(p));
 }
 
-}  // namespace detail
-
 /// Prepares an admitted body with its boundary and a scene, both in the body's frame, as `cuttable` is. Adds copied
 /// nodes to `ids`. Throws as the scene's selections; unconstrained when a part is not constrained.
 template <Element E>
 CutPreparation<E> prepare_cut(const Body<E>& body, const std::vector<BoundaryFace>& boundary, const Scene& scene,
                               const std::optional<Selection>& cuttable, OriginalIds& ids) {
   CutTopology<E> topology(body.mesh, resolve_essential(body.mesh, boundary, scene).constrained);
-  detail::add_copied_nodes(topology, body.mesh.node_count(), ids);
-  if (!topology.detached_fragments().empty()) detail::refuse_detached(topology.detached_fragments()[0]);
+  add_copied_nodes(topology, body.mesh.node_count(), ids);
+  if (!topology.detached_fragments().empty()) refuse_detached(topology.detached_fragments()[0]);
   CutSurface<E> touchable(topology, boundary, scene);
   std::vector<NodeId> kept;
   if (cuttable) kept = resolve_nodes(body.mesh, boundary, *cuttable);
   return {CutPhysics<E>(body, boundary, scene), std::move(topology), std::move(touchable), std::move(kept)};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A body that is cut. Every change publishes a view for the tick. One thread at a time: CuttableTissue locks it.
 /// Neither copied nor moved.
@@ -53,15 +53,15 @@ class CutProcess : public CutState<E> {
     if (!before_) remember();
     const std::uint64_t cuts = report_.cuts, changes = report_.changes;
     has_new_compliance_ = false;
-    detail::run_or_undo([&] { cut(taken, local); },
-                        [&] {
-                          report_.failed = true;
-                          is_behind_ = has_new_compliance_;
-                          if (has_new_compliance_) return;
-                          go_back();
-                          report_.cuts = cuts;
-                          report_.changes = changes;
-                        });
+    run_or_undo([&] { cut(taken, local); },
+                [&] {
+                  report_.failed = true;
+                  is_behind_ = has_new_compliance_;
+                  if (has_new_compliance_) return;
+                  go_back();
+                  report_.cuts = cuts;
+                  report_.changes = changes;
+                });
     return true;
   }
 
@@ -87,7 +87,7 @@ class CutProcess : public CutState<E> {
       std::swap(touchable_, touchable);
       std::swap(resting_, resting);
     };
-    detail::run_or_undo([&] { set_loads(boundary, scene); }, undo);
+    run_or_undo([&] { set_loads(boundary, scene); }, undo);
     edges_.clear();
     before_.reset();
     const CutReport before = std::exchange(report_, CutReport{});
@@ -151,7 +151,7 @@ class CutProcess : public CutState<E> {
     report_.latency = seconds();
     settle();
     report_.fold_seconds = seconds();
-    if (!detail::attempt([&] { remember(); })) before_.reset();  // the next cut tries again
+    if (!attempt([&] { remember(); })) before_.reset();  // the next cut tries again
   }
   /// Completes a cut that ended early because memory was short; true when there was one.
   bool catch_up() {
@@ -196,7 +196,7 @@ class CutProcess : public CutState<E> {
   /// precision.
   void take_in(const TopologyChange<E>& change) {
     if (!follows_topology_) return renew();
-    const bool is_taken = detail::attempt_unless_refused([&] {
+    const bool is_taken = attempt_unless_refused([&] {
       ++cut_;
       const auto step = system_.update(topology_, change);
       has_new_compliance_ = true;
@@ -251,7 +251,7 @@ class CutProcess : public CutState<E> {
   /// Switches to a new factor when one is ready, with the cuts made since it was started.
   bool take_renewal() {
     if (!renewal_ || !renewal_->is_done()) return false;
-    detail::attempt_unless_refused([&] {  // otherwise the old factor stays
+    attempt_unless_refused([&] {  // otherwise the old factor stays
       if (auto made = renewal_->take(topology_)) take_over(std::move(*made));
     });
     renewal_.reset();
@@ -259,8 +259,7 @@ class CutProcess : public CutState<E> {
   }
   void renew() {
     renewal_.reset();
-    if (detail::attempt_unless_refused([&] { take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); }))
-      return;
+    if (attempt_unless_refused([&] { take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); })) return;
     report_.failed = true;
     follows_topology_ = false;
     due_.fill(false);
@@ -276,7 +275,7 @@ class CutProcess : public CutState<E> {
       make_contact();
       publish_exactly();
     };
-    detail::run_or_undo(publish_it, [&] {
+    run_or_undo(publish_it, [&] {
       std::swap(system_, fresh);
       contact_ = contact;
     });
@@ -304,4 +303,4 @@ class CutProcess : public CutState<E> {
   std::unique_ptr<CutRenewal<E>> renewal_;  // declared last: its thread refers to the physics
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

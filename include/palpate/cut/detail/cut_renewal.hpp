@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Builds a system of the current topology in a background thread. Cuts may continue meanwhile: `take` adds all later
 /// cuts as one. The destructor waits for the thread. `physics` must outlive it.
@@ -46,7 +46,7 @@ class CutRenewal {
  private:
   void make(const CutPhysics<E>& physics, const std::vector<NodeId>& kept, const SetupLimits& limits) noexcept {
     // Out of memory or cancelled: nothing is made, and the old system stays.
-    detail::attempt([&] { made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits); });
+    attempt([&] { made_ = std::make_unique<CutSystem<E>>(then_, physics, kept, limits); });
     done_.store(true, std::memory_order_release);
   }
 
@@ -56,4 +56,4 @@ class CutRenewal {
   std::thread thread_;  // declared last: it uses all other members
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

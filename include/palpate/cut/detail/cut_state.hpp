@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The state of a body that is cut, and the views of it for the tick. CutProcess changes it. Neither copied nor moved.
 template <Element E>
@@ -50,7 +50,7 @@ class CutState {
       make_contact();
       if (contact_->left_out && report_.cuts == 0) require_dense_surface(radii.smallest, loads);
     };
-    detail::run_or_undo(make, [&] {
+    run_or_undo(make, [&] {
       tools_ = before;
       contact_ = surface;
     });
@@ -190,7 +190,7 @@ class CutState {
     std::vector<Index> elements = touchable_.elements();
     erase_stretched(positions, ContactSamples::maximum_subdivision * smallest_radius, triangles, elements);
     ContactSurface surface(std::move(positions), std::move(triangles));
-    surface.set_materials(detail::contact_materials(physics_->body, elements));
+    surface.set_materials(contact_materials(physics_->body, elements));
     surface.set_subfacet(half_space_after_cuts(half_space_, topology_, touchable_.nodes()));
     const auto shell = touchable_.shell(topology_);
     surface.add_shell(positions_of(shell.others), shell.triangles);
@@ -237,4 +237,4 @@ class CutState {
   std::uint64_t cut_ = 0;                                 // number of the last cut
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Compliance among kept dofs after one cut: C_ij - z_i . y_j for dofs that were kept before, and explicit columns for
 /// added dofs. Immutable; a tick reads it together with the compliance before the cut.
@@ -45,4 +45,4 @@ inline void CutStep::add_squares(Index j, VectorX& sum) const noexcept {
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

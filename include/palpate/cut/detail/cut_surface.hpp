@@ -17,7 +17,7 @@
 #include <tuple>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Faces that a tool may touch and the vertices of their nodes. Before any cut both are those of resolve_touchable, in
 /// the same order. Vertices keep their numbers: new ones are appended, and those of removed parts stay at their
@@ -127,4 +127,4 @@ class CutSurface {
   std::vector<Index> elements_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A linear body under cuts. The compliance among kept dofs is updated exactly (bordered_update.hpp), by the rows that
 /// a cut changes; the factor is not changed. Nodes touched by a cut become kept: their columns come from the factor,
@@ -70,7 +70,7 @@ class CutSystem {
     const typename ElementChanges<E>::Before changes(changes_, change);
     const std::size_t promoted = promoted_.size(), nodes = source_.size();
     const Index kept_before = kept();
-    detail::run_or_undo(
+    run_or_undo(
         [&] {
           if (units.size() > 0) promoted_.push_back({kept(), std::move(units)});
           accept(topology, plan, *step);
@@ -329,4 +329,4 @@ class CutSystem {
   ElementChanges<E> changes_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -52,27 +52,27 @@ class CutTopology {
     std::iota(parent_.begin(), parent_.end(), NodeId{0});
     copied_from_ = parent_;
     state_.assign(static_cast<std::size_t>(mesh_.element_count()), ElementState::supported);
-    TopologyChange<E> split;
+    detail::TopologyChange<E> split;
     for (NodeId node = 0, count = static_cast<NodeId>(mesh_.node_count()); node < count; ++node)
       split_star(node, split);
     detach(split);
   }
 
   /// Applies an order. Throws index_out_of_range before any change. O(elements) to find fragments, little else.
-  TopologyChange<E> apply(const CutOrder& order) {
+  detail::TopologyChange<E> apply(const CutOrder& order) {
     require_valid(order);
-    TopologyChange<E> change;
+    detail::TopologyChange<E> change;
     std::vector<NodeId> affected;
     for (const Index e : order.remove) remove(e, affected, change);
-    for (const ElementFace& f : order.open) open(f, affected);
+    for (const detail::ElementFace& f : order.open) open(f, affected);
     std::ranges::sort(affected);
     affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
     for (const NodeId node : affected) split_star(node, change);
-    for (const ChangedElement<E>& x : change.elements)
+    for (const detail::ChangedElement<E>& x : change.elements)
       for (const NodeId node : x.before)
         if (star_[at(node)].empty() && std::exchange(bare_[at(node)], 1) == 0) change.bare_nodes.push_back(node);
     expose_welded(change);
-    std::ranges::sort(change.elements, {}, &ChangedElement<E>::element);
+    std::ranges::sort(change.elements, {}, &detail::ChangedElement<E>::element);
     if (!change.elements.empty()) detach(change);
     return change;
   }
@@ -91,12 +91,12 @@ class CutTopology {
   /// Neighbour element across a face, -1 on the surface and at an open face.
   Index neighbour(Index e, std::size_t face) const noexcept { return neighbour_[at(e)][face]; }
   /// Nodes of a face, outward.
-  FaceIds<E> face_nodes(const ElementFace& f) const {
-    return face_ids<E>(mesh_, f.element, static_cast<std::size_t>(f.face));
+  detail::FaceIds<E> face_nodes(const detail::ElementFace& f) const {
+    return detail::face_ids<E>(mesh_, f.element, static_cast<std::size_t>(f.face));
   }
   /// Volume [m^3] by the element's quadrature.
   double volume(Index e) const { return element_shape<E>(element_nodes<E>(mesh_, e)).volume; }
-  const std::vector<Fragment>& detached_fragments() const noexcept { return detached_; }
+  const std::vector<detail::Fragment>& detached_fragments() const noexcept { return detached_; }
 
   /// The part in one state as a separate mesh, with groups and regions. `node_map` gets the new id of every node, -1 if
   /// it is not included; `element_map` the id in this topology of every element of the part.
@@ -134,7 +134,7 @@ class CutTopology {
     const auto outside = [&](Index e) { return e < 0 || e >= mesh_.element_count(); };
     for (const Index e : order.remove)
       if (outside(e)) bad.push_back(e);
-    for (const ElementFace& f : order.open)
+    for (const detail::ElementFace& f : order.open)
       if (outside(f.element) || f.face < 0 || f.face >= static_cast<int>(faces)) bad.push_back(f.element);
     if (bad.empty()) return;
     SetupProblem p;
@@ -149,7 +149,7 @@ class CutTopology {
     extract_boundary<E>(mesh_);  // throws for faces of three elements
     neighbour_.assign(at(mesh_.element_count()), {});
     for (auto& n : neighbour_) n.fill(-1);
-    const std::vector<KeyedFace<E>> all = sorted_faces<E>(mesh_);
+    const std::vector<detail::KeyedFace<E>> all = detail::sorted_faces<E>(mesh_);
     for (std::size_t i = 0; i + 1 < all.size(); ++i)
       if (all[i].key == all[i + 1].key) {
         neighbour_[at(all[i].element)][at(all[i].local)] = all[i + 1].element;
@@ -169,7 +169,7 @@ class CutTopology {
     return -1;
   }
 
-  void remove(Index e, std::vector<NodeId>& affected, TopologyChange<E>& change) {
+  void remove(Index e, std::vector<NodeId>& affected, detail::TopologyChange<E>& change) {
     if (is_removed(e)) return;
     for (std::size_t f = 0; f < faces; ++f) {
       const Index other = neighbour_[at(e)][f];
@@ -186,10 +186,10 @@ class CutTopology {
     auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
     list.push_back({e, nodes, nodes, true});
     state_[at(e)] = ElementState::removed;
-    std::erase_if(change.exposed, [e](const ElementFace& x) { return x.element == e; });
+    std::erase_if(change.exposed, [e](const detail::ElementFace& x) { return x.element == e; });
   }
 
-  void open(const ElementFace& f, std::vector<NodeId>& affected) {
+  void open(const detail::ElementFace& f, std::vector<NodeId>& affected) {
     const Index other = neighbour_[at(f.element)][at(f.face)];
     if (other < 0) return;
     const int back = face_towards(other, f.element);
@@ -200,8 +200,8 @@ class CutTopology {
 
   /// Splits a node whose elements are not connected by faces at it. The part with the most elements keeps the node; of
   /// equal ones the one with the lowest element.
-  void split_star(NodeId node, TopologyChange<E>& change) {
-    const auto parts = star_parts(*this, node);
+  void split_star(NodeId node, detail::TopologyChange<E>& change) {
+    const auto parts = detail::star_parts(*this, node);
     if (parts.size() < 2) return;
     for (std::size_t k = 1; k < parts.size(); ++k) {
       const auto copy = static_cast<NodeId>(mesh_.positions.size());
@@ -216,17 +216,17 @@ class CutTopology {
     }
     star_[at(node)] = parts[0];
   }
-  void reconnect(Index e, NodeId from, NodeId to, TopologyChange<E>& change) {
+  void reconnect(Index e, NodeId from, NodeId to, detail::TopologyChange<E>& change) {
     auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
-    auto found = std::ranges::find(list, e, &ChangedElement<E>::element);
+    auto found = std::ranges::find(list, e, &detail::ChangedElement<E>::element);
     if (found == list.end()) found = list.insert(list.end(), {e, mesh_.elements[at(e)], {}, false});
     std::ranges::replace(mesh_.elements[at(e)], from, to);
     found->after = mesh_.elements[at(e)];
   }
 
   /// Exposes open faces whose two sides no longer share all nodes; until then they are not part of the surface.
-  void expose_welded(TopologyChange<E>& change) {
-    std::erase_if(welded_, [&](const std::array<ElementFace, 2>& sides) {
+  void expose_welded(detail::TopologyChange<E>& change) {
+    std::erase_if(welded_, [&](const std::array<detail::ElementFace, 2>& sides) {
       const bool gone0 = is_removed(sides[0].element), gone1 = is_removed(sides[1].element);
       if (!gone0 && !gone1) {
         auto a = face_nodes(sides[0]), b = face_nodes(sides[1]);
@@ -241,8 +241,8 @@ class CutTopology {
   }
 
   /// Finds and detaches the fragments without support.
-  void detach(TopologyChange<E>& change) {
-    for (Fragment& fragment : unsupported_fragments(*this)) {
+  void detach(detail::TopologyChange<E>& change) {
+    for (detail::Fragment& fragment : detail::unsupported_fragments(*this)) {
       for (const Index e : fragment.elements) state_[at(e)] = ElementState::detached;
       detached_.push_back(fragment);
       change.fragments.push_back(std::move(fragment));
@@ -251,15 +251,15 @@ class CutTopology {
 
   /// Stores the faces of groups by element, because they move with it.
   void list_group_faces() {
-    const std::vector<KeyedFace<E>> all = sorted_faces<E>(mesh_);
+    const std::vector<detail::KeyedFace<E>> all = detail::sorted_faces<E>(mesh_);
     for (const Group& g : mesh_.groups.all()) {
       auto& list = group_faces_.emplace_back();
       for (const auto& nodes : g.faces) {
-        if (!is_face_size<E>(nodes.size())) continue;
-        FaceIds<E> key = make_face_ids<E>(nodes.size());
+        if (!detail::is_face_size<E>(nodes.size())) continue;
+        detail::FaceIds<E> key = detail::make_face_ids<E>(nodes.size());
         std::ranges::copy(nodes, key.begin());
         std::ranges::sort(key);
-        const auto found = std::ranges::lower_bound(all, key, {}, &KeyedFace<E>::key);
+        const auto found = std::ranges::lower_bound(all, key, {}, &detail::KeyedFace<E>::key);
         if (found != all.end() && found->key == key) list.push_back({found->element, found->local});
       }
     }
@@ -272,7 +272,7 @@ class CutTopology {
       Group& to = part.groups.get_or_add(from.name, from.dimension);
       for (std::size_t i = 0; i < node_map.size(); ++i)
         if (node_map[i] >= 0 && std::ranges::binary_search(from.nodes, parent_[i])) to.nodes.push_back(node_map[i]);
-      for (const ElementFace& f : group_faces_[g]) {
+      for (const detail::ElementFace& f : group_faces_[g]) {
         if (place[at(f.element)] < 0) continue;
         std::vector<NodeId> nodes;
         for (const NodeId node : face_nodes(f)) nodes.push_back(node_map[at(node)]);
@@ -290,10 +290,12 @@ class CutTopology {
   std::vector<std::vector<Index>> star_;
   std::vector<NodeId> parent_, copied_from_;
   std::vector<ElementState> state_;
-  std::vector<std::array<ElementFace, 2>> welded_;
-  std::vector<Fragment> detached_;
-  std::vector<std::vector<ElementFace>> group_faces_;
+  std::vector<std::array<detail::ElementFace, 2>> welded_;
+  std::vector<detail::Fragment> detached_;
+  std::vector<std::vector<detail::ElementFace>> group_faces_;
 };
+
+namespace detail {
 
 /// All cuts between two states of one topology as a single change, for the part that was supported in `then`.
 /// O(elements).
@@ -326,5 +328,7 @@ TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& n
       connected_fragments(now, [&](Index e) { return was_supported(e) && now.state(e) == ElementState::detached; });
   return change;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Removes triangles with an edge longer than `longest` [m] and their entries of `elements`, if any; returns whether
 /// there was one.
@@ -79,7 +79,7 @@ struct CutView {
   void set_floor() noexcept;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/cut/detail/cut_view.ipp>

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE bool erase_stretched(const std::vector<Vector3>& positions, double longest,
                                     std::vector<Triangle>& triangles, std::vector<Index>& elements) {
@@ -94,4 +94,4 @@ PALPATE_INLINE void CutView::set_floor() noexcept {
   floor = softest > 0.0 ? std::min(1e-9 * softest, 1e-7 * hardest) : 1e-9;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -13,7 +13,7 @@
 #include <map>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Difference between the current stiffness and the factorised one: minus the changed elements, plus those of them that
 /// still exist, on their current nodes, plus springs on unsupported parts. Dofs are looked up by `place(node,
@@ -156,4 +156,4 @@ class ElementChanges {
   std::vector<Pin> pins_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -19,6 +19,8 @@ template <Element E>
 class CutTopology;
 enum class ElementState : std::uint8_t;
 
+namespace detail {
+
 /// The elements around a node, in parts that are connected by faces containing it; the largest part first, of equal
 /// ones the one with the lowest element. O(k^2) for k elements.
 template <Element E>
@@ -100,8 +102,10 @@ inline int free_mode_count(std::span<const Vector3> positions, std::span<const N
   for (const NodeId node : nodes)
     if ((constrained[static_cast<std::size_t>(node)] & 7u) != 0) supports.push_back(node);
   if (supports.empty()) return 6;
-  const detail::RigidFrame frame(positions, nodes, constrained);
-  return static_cast<int>(detail::free_motions(positions, supports, constrained, frame).size());
+  const RigidFrame frame(positions, nodes, constrained);
+  return static_cast<int>(free_motions(positions, supports, constrained, frame).size());
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A node and a component.
 struct NodeDof {
@@ -52,4 +52,4 @@ inline void KeptDofs::shrink_to(Index size) noexcept {
     place_[static_cast<std::size_t>(dofs_.back().node)][static_cast<std::size_t>(dofs_.back().component)] = -1;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

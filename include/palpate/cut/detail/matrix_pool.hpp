@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Reuses square matrices that no reader refers to any more, with spare capacity: touching the pages of a new matrix
 /// costs as much as writing its entries. Not thread safe; a reader in another thread must return its pointer to the
@@ -48,4 +48,4 @@ inline std::shared_ptr<MatrixX> MatrixPool::take(Index size) {
   return all_.back();
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Displacements of the nodes of detached fragments. A fragment keeps the displacement that it had before the cut that
 /// detached it. Where that is larger than a linear model allows, it returns to its place in the body at rest: a remnant
@@ -57,4 +57,4 @@ class RestingNodes {
   std::vector<Vector3> displacement_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,9 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Signs of the lips: vertices that were one, in pairs of different signs, and the vertices of a triangle that are on
 /// lips, of the same sign. The first sign that reaches a vertex stays.
@@ -47,8 +45,6 @@ inline std::vector<double> lip_signs(const std::vector<std::pair<int, int>>& apa
   return sign;
 }
 
-}  // namespace detail
-
 /// For every vertex of a surface 1 on one lip of a slit, -1 on the other one, and less away from them; 0 far away, and
 /// where a vertex belongs to both. Vertices split from one node are on opposite lips, those of a triangle on the same.
 /// `origin[v]` is the same for vertices that were one. O(triangles).
@@ -74,7 +70,7 @@ inline std::vector<double> slit_sides(const std::vector<Triangle>& triangles, co
       if (const int a = t[k], b = t[(k + 1) % 3];
           on_lip[static_cast<std::size_t>(a)] != 0 && on_lip[static_cast<std::size_t>(b)] != 0)
         together.push_back({a, b});
-  const std::vector<double> lips = detail::lip_signs(apart, together, count);
+  const std::vector<double> lips = lip_signs(apart, together, count);
   std::vector<double> side = lips;
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<double> sum(count, 0.0), neighbours(count, 0.0);
@@ -90,4 +86,4 @@ inline std::vector<double> slit_sides(const std::vector<Triangle>& triangles, co
   return side;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

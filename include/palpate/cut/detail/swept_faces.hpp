@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// An edge of a blade that stays in place, from a to b [m].
 struct RestingEdge {
@@ -171,4 +171,4 @@ CutOrder combined(const CutOrders::Taken& taken, const CutTopology<E>& topology,
   return all;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -12,20 +12,26 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// A face of an element by its index in E::faces.
 struct ElementFace {
   Index element = 0;
   int face = 0;
 };
 
+}  // namespace detail
+
 /// Elements to remove (burning, drilling) and faces to open between elements (a blade). Elements already removed, and
 /// faces without a neighbour, are ignored.
 struct CutOrder {
   std::vector<Index> remove;
-  std::vector<ElementFace> open;
+  std::vector<detail::ElementFace> open;
 
   bool empty() const noexcept { return remove.empty() && open.empty(); }
 };
+
+namespace detail {
 
 /// Throws index_out_of_range unless the order refers to elements 0 ... elements - 1 and to their faces.
 template <Element E>
@@ -75,5 +81,7 @@ struct TopologyChange {
 
   bool empty() const noexcept { return elements.empty() && detached_elements.empty(); }
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -10,7 +10,7 @@
 #include <limits>
 #include <span>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Follows one tool from tick to tick: is its pose readable, finite, continuous with the last? If not, the last valid
 /// pose is kept, or the tool is placed on the surface again. Everything runs in the tick: no throw, no allocation.
@@ -115,7 +115,7 @@ class ToolInput {
   Status status_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/haptic/detail/tool_input.ipp>

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometry3d& pose,
                                     const ContactSurface& surface, std::span<const Contact> contacts,
@@ -119,9 +119,9 @@ PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternio
 
 PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose,
                                       ContactTool& tool) noexcept {
-  const Matrix3 rotation = rotation_of(pose).transpose() * rotation_matrix(orientation);
+  const Matrix3 rotation = palpate::rotation_of(pose).transpose() * rotation_matrix(orientation);
   if (known_) {
-    rotation_ = rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
+    rotation_ = palpate::rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
     tool.end_path = tool.core_path(rotation - tool.target_rotation);
   }
   tool.target_rotation = rotation;
@@ -160,4 +160,4 @@ PALPATE_INLINE Vector3 ToolInput::off_surface(std::span<const Contact> contacts,
   return tool.proxy + (dent / force) * tool.force;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Scales velocities `v` [m/s] down until the kinetic energy is at most `available` [J]; unchanged when it is. `mass`
 /// [kg] of every dof, three per node. A free body keeps its momentum: only velocities relative to the mean are scaled.
@@ -32,4 +32,4 @@ inline void limit_kinetic_energy(double available, const VectorX& mass, bool is_
   for (Index i = 0; i < nodes; ++i) set_node_vector(v, i, mean + scale * (node_vector(v, i) - mean));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

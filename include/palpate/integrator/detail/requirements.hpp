@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Throws bad_argument for Rayleigh coefficients that are negative (they would add energy) or not finite.
 void require_damping(double mass_damping, double stiffness_damping);
@@ -36,4 +36,4 @@ inline VectorX mass_of_dofs(const VectorX& nodal_mass) {
   return mass;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

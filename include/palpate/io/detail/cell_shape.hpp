@@ -78,7 +78,7 @@ constexpr const ShapeFacts& facts(CellShape shape) noexcept {
 
 /// The shape of an element, deduced from its numbers of nodes and faces, so that user-defined elements can be read
 /// without registration.
-constexpr CellShape solid_shape(const ElementLayout& element) noexcept {
+constexpr CellShape solid_shape(const palpate::detail::ElementLayout& element) noexcept {
   if (element.face_count == 4) return element.nodes == 4 ? CellShape::tetrahedron4 : CellShape::tetrahedron10;
   return element.nodes == 8 ? CellShape::hexahedron8 : CellShape::hexahedron20;
 }
@@ -103,7 +103,7 @@ constexpr CellShape solid_shape() {
   constexpr std::size_t faces = E::faces.size();
   static_assert((faces == 4 && (E::nodes == 4 || E::nodes == 10)) || (faces == 6 && (E::nodes == 8 || E::nodes == 20)),
                 "files are read into tetrahedra of 4 or 10 nodes and hexahedra of 8 or 20 nodes");
-  constexpr CellShape shape = solid_shape(element_layout<E>);
+  constexpr CellShape shape = solid_shape(palpate::detail::element_layout<E>);
   static_assert(facts(shape).nodes == E::nodes && facts(face_shape(shape)).nodes == E::Face::nodes);
   return shape;
 }

@@ -54,14 +54,14 @@ inline void drop_repeated_faces(std::vector<std::vector<NodeId>>& faces) {
 /// Converts a parsed file to a mesh of elements of one layout.
 class MeshBuilder {
  public:
-  MeshBuilder(const FileMesh& file, const ElementLayout& element)
+  MeshBuilder(const FileMesh& file, const palpate::detail::ElementLayout& element)
       : file_(file),
         element_(element),
         solid_(solid_shape(element)),
         face_(face_shape(solid_)),
         order_(element_order(element)) {}
 
-  PlainMesh build(double scale);
+  palpate::detail::PlainMesh build(double scale);
 
   std::vector<Index> element_tags;
 
@@ -86,15 +86,15 @@ class MeshBuilder {
   Index element_count() const { return static_cast<Index>(mesh_.regions.size()); }
 
   const FileMesh& file_;
-  const ElementLayout element_;
+  const palpate::detail::ElementLayout element_;
   const CellShape solid_, face_;
   const std::vector<int> order_;
-  PlainMesh mesh_;
+  palpate::detail::PlainMesh mesh_;
   PairMap group_of_;  ///< (dimension, tag) -> group
   std::uint32_t last_set_ = 0;
 };
 
-inline PlainMesh MeshBuilder::build(double scale) {
+inline palpate::detail::PlainMesh MeshBuilder::build(double scale) {
   if (!(scale > 0.0) || !std::isfinite(scale))
     refuse(SetupErrorKind::bad_argument, {"a mesh cannot be scaled by ", scale});
   check_solid_shapes();
@@ -274,10 +274,10 @@ PALPATE_COLD inline void MeshBuilder::refuse_without_solids() const {
 
 }  // namespace detail
 
-PALPATE_INLINE PlainMesh build_plain_mesh(FileMesh file, const ElementLayout& element, double scale,
-                                          MeshNumbering* numbering) {
+PALPATE_INLINE palpate::detail::PlainMesh build_plain_mesh(FileMesh file, const palpate::detail::ElementLayout& element,
+                                                           double scale, MeshNumbering* numbering) {
   detail::MeshBuilder builder(file, element);
-  PlainMesh mesh = builder.build(scale);
+  palpate::detail::PlainMesh mesh = builder.build(scale);
   if (numbering != nullptr) *numbering = {std::move(file.node_tags), std::move(builder.element_tags)};
   return mesh;
 }

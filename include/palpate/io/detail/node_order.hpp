@@ -31,20 +31,20 @@ inline constexpr std::array<std::array<int, 2>, 12> hexahedron_edges{
 
 /// The reference nodes of an element, x y z each, on the unit tetrahedron (0, e1, e2, e3) or the unit cube: mapped for
 /// a tetrahedron by its first four nodes, for a hexahedron by its bounding box.
-void nodes_on_unit_domain(const ElementLayout& element, double* xyz);
+void nodes_on_unit_domain(const palpate::detail::ElementLayout& element, double* xyz);
 
 /// order[a] is VTK's node at the position of the element's node a. It is computed from the reference nodes, so that
 /// elements may use any order. Refuses as bad_argument an element whose nodes are not all corners or mid-edge nodes.
-std::vector<int> element_order(const ElementLayout& element);
+std::vector<int> element_order(const palpate::detail::ElementLayout& element);
 
 /// order[k] is the element's node at the position of VTK's node k, for writers.
-std::vector<int> vtk_order(const ElementLayout& element);
+std::vector<int> vtk_order(const palpate::detail::ElementLayout& element);
 
 /// The same for element E, nodes in rows.
 template <Element E>
 Eigen::Matrix<double, E::nodes, 3> nodes_on_unit_domain() {
   Eigen::Matrix<double, 3, E::nodes> x;
-  nodes_on_unit_domain(element_layout<E>, x.data());
+  nodes_on_unit_domain(palpate::detail::element_layout<E>, x.data());
   return x.transpose();
 }
 
@@ -52,7 +52,7 @@ Eigen::Matrix<double, E::nodes, 3> nodes_on_unit_domain() {
 template <Element E>
 std::array<int, static_cast<std::size_t>(E::nodes)> element_order() {
   static_assert(facts(solid_shape<E>()).nodes == E::nodes);
-  const std::vector<int> order = element_order(element_layout<E>);
+  const std::vector<int> order = element_order(palpate::detail::element_layout<E>);
   std::array<int, static_cast<std::size_t>(E::nodes)> result{};
   for (std::size_t a = 0; a < result.size(); ++a) result[a] = order[a];
   return result;
@@ -62,7 +62,7 @@ std::array<int, static_cast<std::size_t>(E::nodes)> element_order() {
 template <Element E>
 std::array<int, static_cast<std::size_t>(E::nodes)> vtk_order() {
   static_assert(facts(solid_shape<E>()).nodes == E::nodes);
-  const std::vector<int> order = vtk_order(element_layout<E>);
+  const std::vector<int> order = vtk_order(palpate::detail::element_layout<E>);
   std::array<int, static_cast<std::size_t>(E::nodes)> result{};
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = order[k];
   return result;
@@ -129,7 +129,7 @@ inline void to_unit_cube(double* xyz, int nodes) {
 
 }  // namespace detail
 
-PALPATE_COLD inline void nodes_on_unit_domain(const ElementLayout& element, double* xyz) {
+PALPATE_COLD inline void nodes_on_unit_domain(const palpate::detail::ElementLayout& element, double* xyz) {
   element.reference_nodes(xyz);
   if (element.face_count == 4)
     detail::to_unit_tetrahedron(xyz, element.nodes);
@@ -137,7 +137,7 @@ PALPATE_COLD inline void nodes_on_unit_domain(const ElementLayout& element, doub
     detail::to_unit_cube(xyz, element.nodes);
 }
 
-PALPATE_COLD inline std::vector<int> element_order(const ElementLayout& element) {
+PALPATE_COLD inline std::vector<int> element_order(const palpate::detail::ElementLayout& element) {
   std::vector<double> xyz(3 * static_cast<std::size_t>(element.nodes));
   nodes_on_unit_domain(element, xyz.data());
   std::vector<int> order(static_cast<std::size_t>(element.nodes));
@@ -157,7 +157,7 @@ PALPATE_COLD inline std::vector<int> element_order(const ElementLayout& element)
   return order;
 }
 
-PALPATE_COLD inline std::vector<int> vtk_order(const ElementLayout& element) {
+PALPATE_COLD inline std::vector<int> vtk_order(const palpate::detail::ElementLayout& element) {
   const std::vector<int> from = element_order(element);
   std::vector<int> order(from.size());
   for (std::size_t a = 0; a < from.size(); ++a) order[static_cast<std::size_t>(from[a])] = static_cast<int>(a);

@@ -13,6 +13,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryWriter;
 
+namespace detail {
+
 /// A solver that can compute a few entries of the solution for a few loads faster than the whole solution.
 template <class S>
 concept PathSolver = requires(S& s, std::span<const Index> dofs, std::span<const double> loads,
@@ -265,5 +267,7 @@ class AnyStaticSystem {
 };
 
 static_assert(StaticSystem<AnyStaticSystem>);
+
+}  // namespace detail
 
 }}  // namespace palpate

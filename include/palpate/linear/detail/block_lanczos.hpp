@@ -3,7 +3,7 @@
 
 #include <palpate/linear/sparse_cholesky.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Eigenpairs K x = lambda M x of a pencil shifted to K - sigma M: largest theta = 1 / (lambda - sigma) first.
 struct LanczosPairs {
@@ -55,7 +55,7 @@ class BlockLanczos {
   std::uint64_t random_ = 20250101;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/linear/detail/block_lanczos.ipp>

@@ -12,9 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// y = m x for one column; entries above the diagonal are ignored.
 inline void sparse_symmetric_product(const SparseLower& m, const double* x, double* y) noexcept {
@@ -36,8 +34,6 @@ inline void sparse_symmetric_product(const SparseLower& m, const double* x, doub
 inline Target whole_target(MatrixX& m) noexcept {
   return {m.data(), m.rows(), m.cols(), m.rows()};
 }
-
-}  // namespace detail
 
 PALPATE_INLINE BlockLanczos::BlockLanczos(const SparseCholesky& factor, const SparseLower& mass, const MatrixX& known,
                                           Index wanted)
@@ -88,7 +84,7 @@ PALPATE_INLINE MatrixX BlockLanczos::random_block() {
 PALPATE_INLINE MatrixX BlockLanczos::mass_times(const MatrixX& x) const {
   MatrixX y(x.rows(), x.cols());
   for (Index j = 0; j < x.cols(); ++j)
-    detail::sparse_symmetric_product(mass_, x.data() + j * x.rows(), y.data() + j * x.rows());
+    sparse_symmetric_product(mass_, x.data() + j * x.rows(), y.data() + j * x.rows());
   return y;
 }
 
@@ -103,8 +99,7 @@ PALPATE_INLINE MatrixX BlockLanczos::basis_products(Index first, Index count, co
   const Index n = basis_.rows();
   MatrixX h(count, x.cols());
   std::fill_n(h.data(), h.size(), 0.0);
-  detail::add_product(detail::whole_target(h), 1.0, {basis_.data() + first * n, n, detail::Read::transposed},
-                      {x.data(), n}, n);
+  add_product(whole_target(h), 1.0, {basis_.data() + first * n, n, detail::Read::transposed}, {x.data(), n}, n);
   return h;
 }
 
@@ -115,8 +110,8 @@ PALPATE_INLINE void BlockLanczos::append(MatrixX w) {
   const MatrixX in_basis = basis_products(0, size_, mw);
   std::vector<double> before(static_cast<std::size_t>(columns)), mv(static_cast<std::size_t>(n));
   for (Index j = 0; j < columns; ++j)
-    before[static_cast<std::size_t>(j)] = std::sqrt(detail::dot(w.data() + j * n, mw.data() + j * n, n));
-  detail::add_product(detail::whole_target(w), -1.0, {basis_.data(), n}, {in_basis.data(), size_}, size_);
+    before[static_cast<std::size_t>(j)] = std::sqrt(dot(w.data() + j * n, mw.data() + j * n, n));
+  add_product(whole_target(w), -1.0, {basis_.data(), n}, {in_basis.data(), size_}, size_);
   for (Index j = 0; j < columns && size_ < basis_.cols(); ++j)
     append_column(w.data() + j * n, mv.data(), before[static_cast<std::size_t>(j)]);
 }
@@ -126,12 +121,12 @@ PALPATE_INLINE void BlockLanczos::append_column(double* v, double* mass_v, doubl
   const Index n = basis_.rows();
   std::vector<double> part(static_cast<std::size_t>(size_));
   for (int twice = 0; twice < 2; ++twice) {
-    detail::sparse_symmetric_product(mass_, v, mass_v);
-    detail::transposed_product(basis_.data(), n, size_, mass_v, part.data());
-    detail::subtract_product(basis_.data(), n, size_, part.data(), v);
+    sparse_symmetric_product(mass_, v, mass_v);
+    transposed_product(basis_.data(), n, size_, mass_v, part.data());
+    subtract_product(basis_.data(), n, size_, part.data(), v);
   }
-  detail::sparse_symmetric_product(mass_, v, mass_v);
-  const double norm = std::sqrt(std::max(0.0, detail::dot(v, mass_v, n)));
+  sparse_symmetric_product(mass_, v, mass_v);
+  const double norm = std::sqrt(std::max(0.0, dot(v, mass_v, n)));
   if (!(norm > 1e-12 * before)) return;
   for (Index i = 0; i < n; ++i) basis(size_)[i] = v[i] / norm;
   ++size_;
@@ -162,7 +157,7 @@ PALPATE_INLINE LanczosPairs BlockLanczos::ritz_pairs(const MatrixX& coupling) {
       if (!std::isfinite(ritz_(i, j)))
         raise(SetupErrorKind::non_finite, "the eigenvalue iteration produced non-finite numbers");
     }
-  detail::symmetric_eigen(ritz_, values_);
+  symmetric_eigen(ritz_, values_);
   LanczosPairs pairs;
   pairs.theta.resize(count);
   std::vector<double> out(static_cast<std::size_t>(coupling.rows()));
@@ -170,9 +165,8 @@ PALPATE_INLINE LanczosPairs BlockLanczos::ritz_pairs(const MatrixX& coupling) {
     pairs.theta[i] = values_[m - 1 - i];
     std::fill(out.begin(), out.end(), 0.0);
     for (Index k = 0; k < width; ++k)
-      detail::add_scaled(out.data(), ritz_(m - width + k, m - 1 - i), coupling.data() + k * coupling.rows(),
-                         coupling.rows());
-    const double left = std::sqrt(detail::dot(out.data(), out.data(), coupling.rows()));
+      add_scaled(out.data(), ritz_(m - width + k, m - 1 - i), coupling.data() + k * coupling.rows(), coupling.rows());
+    const double left = std::sqrt(dot(out.data(), out.data(), coupling.rows()));
     pairs.residual = std::max(pairs.residual, left / pairs.theta[i]);
   }
   return pairs;
@@ -183,8 +177,7 @@ PALPATE_INLINE MatrixX BlockLanczos::ritz_vectors(Index count) const {
   const Index n = basis_.rows(), m = ritz_.rows();
   MatrixX vectors(n, count);
   std::fill_n(vectors.data(), vectors.size(), 0.0);
-  detail::add_product(detail::whole_target(vectors), 1.0, {basis_.data() + known_ * n, n},
-                      {ritz_.data() + (m - count) * m, m}, m);
+  add_product(whole_target(vectors), 1.0, {basis_.data() + known_ * n, n}, {ritz_.data() + (m - count) * m, m}, m);
   return vectors;
 }
 
@@ -200,4 +193,4 @@ PALPATE_INLINE void BlockLanczos::restart() {
   size_ = expanded_ + next;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

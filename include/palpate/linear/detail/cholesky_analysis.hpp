@@ -6,11 +6,9 @@
 
 #include <memory>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-namespace detail {
 struct FrontTree;
-}
 
 /// Elimination order, fronts and memory of a factorisation, for any values on one pattern. Copies share all data.
 class CholeskyAnalysis {
@@ -46,7 +44,7 @@ class CholeskyAnalysis {
   /// the same hash. The order depends on floating-point positions, so it may differ between builds.
   std::uint64_t order_hash() const noexcept;
 
-  const detail::FrontTree& tree() const noexcept;
+  const FrontTree& tree() const noexcept;
   /// Doubles that a factorisation needs to pack operands, including zero rows at the end.
   Index pack_size() const noexcept;
 
@@ -56,7 +54,7 @@ class CholeskyAnalysis {
   std::shared_ptr<const Data> data_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/linear/detail/cholesky_analysis.ipp>

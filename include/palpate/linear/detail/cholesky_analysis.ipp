@@ -12,9 +12,7 @@
 
 #include <algorithm>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Builds the fronts of the supernodes and places the entries of a matrix in them.
 FrontTree build_front_tree(const NodeGraph& g, const Supernodes& s, const SparseLower& lower);
@@ -173,10 +171,8 @@ void add_to_hash(ContentHash& hash, const IndexedVector<T>& values) noexcept {
   hash.add(std::span<const T>(values.data(), static_cast<std::size_t>(values.size())));
 }
 
-}  // namespace detail
-
 struct CholeskyAnalysis::Data {
-  detail::FrontTree tree;
+  FrontTree tree;
   std::vector<Index> kept, node_of_dof;
   std::uint64_t pattern = 0;
 };
@@ -185,12 +181,12 @@ PALPATE_INLINE CholeskyAnalysis::CholeskyAnalysis(const SparseLower& lower, cons
                                                   const SetupLimits& limits) {
   limits.advance("factorisation", 0.0);
   const NodeGraph graph = node_graph(lower, layout);
-  const detail::EliminationTree tree = detail::elimination_tree(graph, nested_dissection(graph, limits));
+  const EliminationTree tree = elimination_tree(graph, nested_dissection(graph, limits));
   auto made = std::make_shared<Data>();
-  made->tree = detail::build_front_tree(graph, detail::find_supernodes(graph, tree), lower);
+  made->tree = build_front_tree(graph, find_supernodes(graph, tree), lower);
   made->kept = layout.kept;
   made->node_of_dof = layout.node_of_dof;
-  made->pattern = detail::hash_of_pattern(lower);
+  made->pattern = hash_of_pattern(lower);
   data_ = std::move(made);
 }
 
@@ -223,37 +219,37 @@ PALPATE_INLINE double CholeskyAnalysis::repeated_peak_bytes() const noexcept {
 }
 PALPATE_INLINE double CholeskyAnalysis::peak_bytes(int threads) const {
   if (!data_) return 0.0;
-  const double side = detail::ParallelFronts::peak_doubles(data_->tree, front_count(), pack_size(), threads);
+  const double side = ParallelFronts::peak_doubles(data_->tree, front_count(), pack_size(), threads);
   return factor_bytes() + sizeof(double) * (side + 2.0 * static_cast<double>(size()));
 }
 PALPATE_INLINE double CholeskyAnalysis::interior_peak_bytes(int threads) const {
   if (!data_ || data_->kept.empty()) return peak_bytes(threads);
   const auto k = static_cast<double>(data_->kept.size());
-  const double side = detail::ParallelFronts::peak_doubles(data_->tree, front_count() - 1, pack_size(), threads);
+  const double side = ParallelFronts::peak_doubles(data_->tree, front_count() - 1, pack_size(), threads);
   return factor_bytes() + sizeof(double) * (std::max(side, k * k) + 2.0 * static_cast<double>(size()));
 }
 PALPATE_INLINE bool CholeskyAnalysis::fits(const SparseLower& lower) const noexcept {
-  return data_ && data_->pattern == detail::hash_of_pattern(lower);
+  return data_ && data_->pattern == hash_of_pattern(lower);
 }
 
 PALPATE_INLINE std::uint64_t CholeskyAnalysis::order_hash() const noexcept {
   ContentHash hash;
   if (!data_) return hash.digest();
-  const detail::FrontTree& t = data_->tree;
-  hash.add(detail::LowerPanels::width);
-  hash.add(detail::LowerPanels::alignment);
-  detail::add_to_hash(hash, t.fronts);
-  detail::add_to_hash(hash, t.runs);
-  detail::add_to_hash(hash, t.place_of_dof);
+  const FrontTree& t = data_->tree;
+  hash.add(LowerPanels::width);
+  hash.add(LowerPanels::alignment);
+  add_to_hash(hash, t.fronts);
+  add_to_hash(hash, t.runs);
+  add_to_hash(hash, t.place_of_dof);
   hash.add(std::span<const Index>(data_->kept));
   return hash.digest();
 }
 
-PALPATE_INLINE const detail::FrontTree& CholeskyAnalysis::tree() const noexcept {
+PALPATE_INLINE const FrontTree& CholeskyAnalysis::tree() const noexcept {
   return data_->tree;
 }
 PALPATE_INLINE Index CholeskyAnalysis::pack_size() const noexcept {
-  return 2 * (data_->tree.largest_front + 64) * detail::LowerPanels::width;
+  return 2 * (data_->tree.largest_front + 64) * LowerPanels::width;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

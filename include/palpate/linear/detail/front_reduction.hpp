@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The non-zero rows of L^-1 e for unit loads e on some dofs of an interior factor, and the loads to which they
 /// condense on the kept dofs. These give entries of the inverse without a backward substitution: with F the condensed
@@ -21,8 +21,6 @@ struct ReducedUnits {
   MatrixX products(const ReducedUnits& other) const;
 };
 
-namespace detail {
-
 struct FrontTree;
 
 /// Forward substitution of unit loads on `dofs`, none of them kept, through the first `fronts` fronts; `kept` are the
@@ -30,9 +28,7 @@ struct FrontTree;
 ReducedUnits reduce_units(const FrontTree& tree, const double* factor, Index fronts, std::span<const Index> dofs,
                           std::span<const Index> kept);
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/linear/detail/front_reduction.ipp>

@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Some rows of a matrix, in the given order.
 inline MatrixX rows_of(const MatrixX& m, const std::vector<Index>& rows) {
@@ -63,8 +61,6 @@ PALPATE_INLINE ReducedUnits reduce_units(const FrontTree& tree, const double* fa
   return out;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE MatrixX ReducedUnits::products(const ReducedUnits& other) const {
   std::vector<Index> mine, others;
   for (std::size_t i = 0, j = 0; i < places.size() && j < other.places.size();)
@@ -74,7 +70,7 @@ PALPATE_INLINE MatrixX ReducedUnits::products(const ReducedUnits& other) const {
     } else {
       ++(places[i] < other.places[j] ? i : j);
     }
-  return detail::transposed_product(detail::rows_of(values, mine), detail::rows_of(other.values, others));
+  return transposed_product(rows_of(values, mine), rows_of(other.values, others));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

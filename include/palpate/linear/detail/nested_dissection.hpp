@@ -15,9 +15,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Orders the small parts left by nested dissection. Neighbours outside the part count in the degrees, as far as they
 /// fit into the bit sets. O(nodes x neighbours) operations on bit sets.
@@ -275,16 +273,14 @@ class PartQueue {
   bool stopped_ = false;
 };
 
-}  // namespace detail
-
 /// The nodes of a graph in elimination order, kept ones last. Uses coordinates if there are any. The order is the same
 /// for any number of threads. O(edges log nodes). Throws cancelled.
-inline detail::NodeVector nested_dissection(const NodeGraph& graph, const SetupLimits& limits = {}) {
-  detail::Dissection all(graph);
-  detail::PartQueue(all, limits).run();
+inline NodeVector nested_dissection(const NodeGraph& graph, const SetupLimits& limits = {}) {
+  Dissection all(graph);
+  PartQueue(all, limits).run();
   for (Index v = 0; v < graph.nodes(); ++v)
     if (graph.kept[v] != 0) all.order.push_back(static_cast<NodeId>(v));
   return std::move(all.order);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -7,8 +7,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Lower half of a symmetric matrix, compressed. Entries above the diagonal are ignored.
 using SparseLower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+
+}  // namespace detail
 
 /// Optional information about the dofs of a matrix; every field may be empty.
 struct DofLayout {
@@ -17,15 +21,17 @@ struct DofLayout {
   std::vector<Index> kept;         ///< dofs to eliminate last; the Schur complement has this order
 };
 
+namespace detail {
+
 /// Undirected graph of nodes without loops. Every node has at least one dof; all dofs of a node are kept, or none.
 struct NodeGraph {
-  detail::OffsetVector start;        ///< nodes + 1 offsets into neighbour
-  detail::NodeVector neighbour;      ///< both directions of every edge
-  detail::OffsetVector dof_start;    ///< nodes + 1 offsets into dof
-  detail::IndexedVector<Index> dof;  ///< dofs of every node, ascending
-  detail::NodeVector node_of_dof;    ///< inverse of `dof`
-  detail::IndexedVector<char> kept;  ///< per node
-  std::vector<Vector3> positions;    ///< per node, or empty
+  OffsetVector start;              ///< nodes + 1 offsets into neighbour
+  NodeVector neighbour;            ///< both directions of every edge
+  OffsetVector dof_start;          ///< nodes + 1 offsets into dof
+  IndexedVector<Index> dof;        ///< dofs of every node, ascending
+  NodeVector node_of_dof;          ///< inverse of `dof`
+  IndexedVector<char> kept;        ///< per node
+  std::vector<Vector3> positions;  ///< per node, or empty
 
   Index nodes() const noexcept { return start.size() - 1; }
   Index weight(Index node) const noexcept { return dof_start[node + 1] - dof_start[node]; }
@@ -33,6 +39,8 @@ struct NodeGraph {
 
 /// Builds the graph of a matrix. O(nonzeros), allocates. Throws bad_argument when the layout does not fit the matrix.
 NodeGraph node_graph(const SparseLower& lower, const DofLayout& layout);
+
+}  // namespace detail
 
 }}  // namespace palpate
 

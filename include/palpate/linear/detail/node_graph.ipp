@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Assigns consecutive dofs with the same neighbours, including each other, to the same node. This recovers the dofs
 /// of a mesh node when no layout is given. O(nonzeros).
@@ -104,26 +102,23 @@ inline void check_layout(const SparseLower& lower, const DofLayout& layout) {
           "Give a square matrix, one node per dof, finite coordinates for every node, and each kept dof once");
 }
 
-}  // namespace detail
-
 PALPATE_INLINE NodeGraph node_graph(const SparseLower& lower, const DofLayout& layout) {
-  detail::check_layout(lower, layout);
+  check_layout(lower, layout);
   NodeGraph g;
-  detail::collect_nodes(g, layout,
-                        layout.node_of_dof.empty() ? detail::nodes_from_equal_rows(lower) : layout.node_of_dof);
+  collect_nodes(g, layout, layout.node_of_dof.empty() ? nodes_from_equal_rows(lower) : layout.node_of_dof);
   const Index count = g.kept.size();
   std::vector<std::array<NodeId, 2>> edges;
   edges.reserve(static_cast<std::size_t>(8 * count));
   g.start.assign(count + 1, 0);
-  detail::visit_edges(g, lower, [&](NodeId a, NodeId b) {
+  visit_edges(g, lower, [&](NodeId a, NodeId b) {
     edges.push_back({a, b});
     ++g.start[a + 1];
     ++g.start[b + 1];
   });
   // A pair found from both sides (interleaved dofs of two nodes) is stored twice, which is harmless.
-  detail::accumulate_offsets(g.start);
+  accumulate_offsets(g.start);
   g.neighbour.resize(g.start[count]);
-  detail::OffsetVector fill = g.start;
+  OffsetVector fill = g.start;
   for (const auto& [a, b] : edges) {
     g.neighbour[fill[a]++] = b;
     g.neighbour[fill[b]++] = a;
@@ -131,4 +126,4 @@ PALPATE_INLINE NodeGraph node_graph(const SparseLower& lower, const DofLayout& l
   return g;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

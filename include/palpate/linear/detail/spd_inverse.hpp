@@ -4,7 +4,7 @@
 #include <palpate/core/executor.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Replaces the lower half of an SPD matrix by that of its inverse, recursively in halves: with S the Schur complement
 /// of A_11, B_22 = S^-1, B_21 = -B_22 T, B_11 = A_11^-1 + T^T B_22 T, T = A_21 A_11^-1. About n^3 multiplications and
@@ -32,7 +32,7 @@ class SpdInverse {
   double worst_ = 1.0;  // smallest pivot so far, relative to its diagonal entry; NaN ends the inversion
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/linear/detail/spd_inverse.ipp>

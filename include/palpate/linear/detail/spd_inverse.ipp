@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void SpdInverse::invert(MatrixX& matrix, double threshold, const char* what,
                                        const SetupThreads& threads) {
@@ -48,12 +48,12 @@ PALPATE_INLINE void SpdInverse::split(Index begin, Index size) {
   double* const a22 = at(begin + m, begin + m);
   split(begin, m);
   std::vector<double> t(static_cast<std::size_t>(rest * m), 0.0);
-  detail::add_product({t.data(), rest, m, rest}, 1.0, {a21, n_}, {a11, n_, Read::symmetric}, m, threads_);
-  detail::add_product({a22, rest, rest, n_, true}, -1.0, {t.data(), rest}, {a21, n_, Read::transposed}, m, threads_);
+  add_product({t.data(), rest, m, rest}, 1.0, {a21, n_}, {a11, n_, Read::symmetric}, m, threads_);
+  add_product({a22, rest, rest, n_, true}, -1.0, {t.data(), rest}, {a21, n_, Read::transposed}, m, threads_);
   split(begin + m, rest);
   for (Index j = 0; j < m; ++j) std::fill_n(a21 + j * n_, rest, 0.0);
-  detail::add_product({a21, rest, m, n_}, -1.0, {a22, n_, Read::symmetric}, {t.data(), rest}, rest, threads_);
-  detail::add_product({a11, m, m, n_, true}, -1.0, {t.data(), rest, Read::transposed}, {a21, n_}, rest, threads_);
+  add_product({a21, rest, m, n_}, -1.0, {a22, n_, Read::symmetric}, {t.data(), rest}, rest, threads_);
+  add_product({a11, m, m, n_, true}, -1.0, {t.data(), rest, Read::transposed}, {a21, n_}, rest, threads_);
 }
 
 /// Cholesky in a copy, column by column, then the inverse of its factor L, then L^-T L^-1.
@@ -64,7 +64,7 @@ PALPATE_INLINE void SpdInverse::invert_leaf(Index begin, Index size) {
   for (Index j = 0; j < size; ++j)
     for (Index i = j; i < size; ++i) l(j)[i] = *at(begin + i, begin + j);
   for (Index j = 0; j < size; ++j) {
-    for (Index q = 0; q < j; ++q) detail::add_scaled(l(j) + j, -l(q)[j], l(q) + j, size - j);
+    for (Index q = 0; q < j; ++q) add_scaled(l(j) + j, -l(q)[j], l(q) + j, size - j);
     const double pivot = l(j)[j], ratio = pivot / diagonal_.data()[begin + j];
     if (!(std::isfinite(ratio) && ratio >= worst_)) worst_ = ratio;
     if (!(worst_ > threshold_)) return;
@@ -75,11 +75,11 @@ PALPATE_INLINE void SpdInverse::invert_leaf(Index begin, Index size) {
     column(j)[j] = 1.0;
     for (Index q = j; q < size; ++q) {
       column(j)[q] /= l(q)[q];
-      detail::add_scaled(column(j) + q + 1, -column(j)[q], l(q) + q + 1, size - q - 1);
+      add_scaled(column(j) + q + 1, -column(j)[q], l(q) + q + 1, size - q - 1);
     }
   }
   for (Index j = 0; j < size; ++j)
-    for (Index i = j; i < size; ++i) *at(begin + i, begin + j) = detail::dot(column(i) + i, column(j) + i, size - i);
+    for (Index i = j; i < size; ++i) *at(begin + i, begin + j) = dot(column(i) + i, column(j) + i, size - i);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -9,6 +9,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// D = deviatoric + volumetric. The volumetric part is kappa m m^T with m = (1 1 1 0 0 0) and kappa = 1 / (m . D^-1 m),
 /// the bulk modulus under hydrostatic pressure. This is the largest kappa for which the deviatoric part stays positive
 /// semidefinite; for an isotropic material the deviatoric part has no bulk stiffness.
@@ -36,14 +38,18 @@ inline double bulk_modulus(const Matrix6& d) noexcept {
   return 1.0 / sum;
 }
 
-inline SplitElasticity split_elasticity(const Matrix6& d) noexcept {
-  SplitElasticity split;
-  const double bulk = bulk_modulus(d);
+}  // namespace detail
+
+inline detail::SplitElasticity split_elasticity(const Matrix6& d) noexcept {
+  detail::SplitElasticity split;
+  const double bulk = detail::bulk_modulus(d);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) split.volumetric(i, j) = bulk;
   split.deviatoric = d - split.volumetric;
   return split;
 }
+
+namespace detail {
 
 /// The shear modulus of that material [Pa].
 inline double equivalent_shear_modulus(const Matrix6& d) noexcept {
@@ -57,5 +63,7 @@ inline double equivalent_poisson_ratio(const Matrix6& d) noexcept {
   const double bulk = bulk_modulus(d), shear = equivalent_shear_modulus(d);
   return bulk > 0.0 && std::isfinite(bulk) ? (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)) : 0.5;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The parts of a mesh that share no node, numbered from zero in the order of their lowest node; -1 marks a node that
 /// no element uses.
@@ -20,16 +20,12 @@ struct MeshComponents {
   Index count = 0;
 };
 
-namespace detail {
-
 /// Root of a node's tree, with path halving.
 inline NodeId find_root(std::vector<NodeId>& parent, NodeId node) noexcept {
   const auto at = [&](NodeId i) -> NodeId& { return parent[static_cast<std::size_t>(i)]; };
   while (at(node) != node) node = at(node) = at(at(node));
   return node;
 }
-
-}  // namespace detail
 
 /// Components by shared nodes. Indices must be in range. Union-find: practically O(nodes + elements), allocates.
 inline MeshComponents connected_components(const MeshRef& mesh) {
@@ -39,10 +35,10 @@ inline MeshComponents connected_components(const MeshRef& mesh) {
   std::vector<char> used(n, 0);
   for (Index e = 0; e < mesh.element_count; ++e) {
     const NodeId* nodes = mesh.nodes_of(e);
-    NodeId root = detail::find_root(parent, nodes[0]);
+    NodeId root = find_root(parent, nodes[0]);
     for (int a = 0; a < mesh.element.nodes; ++a) {
       used[static_cast<std::size_t>(nodes[a])] = 1;
-      const NodeId other = detail::find_root(parent, nodes[a]);
+      const NodeId other = find_root(parent, nodes[a]);
       // The lower id becomes the root, so that components are numbered by their lowest node below.
       parent[static_cast<std::size_t>(std::max(root, other))] = std::min(root, other);
       root = std::min(root, other);
@@ -51,7 +47,7 @@ inline MeshComponents connected_components(const MeshRef& mesh) {
   MeshComponents components{std::vector<NodeId>(n, -1), 0};
   for (std::size_t i = 0; i < n; ++i) {
     if (used[i] == 0) continue;
-    const auto root = static_cast<std::size_t>(detail::find_root(parent, static_cast<NodeId>(i)));
+    const auto root = static_cast<std::size_t>(find_root(parent, static_cast<NodeId>(i)));
     components.of_node[i] = root == i ? static_cast<NodeId>(components.count++) : components.of_node[root];
   }
   return components;
@@ -60,7 +56,7 @@ inline MeshComponents connected_components(const MeshRef& mesh) {
 /// The same for any mesh.
 template <Element E, MeshOf<E> M>
 MeshComponents connected_components(const M& mesh) {
-  return connected_components(detail::plain_view<E>(mesh).mesh);
+  return connected_components(plain_view<E>(mesh).mesh);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -59,7 +59,7 @@ inline CurvedBoundary::CurvedBoundary(const CurvedSurface& surface, const Mesh<T
   if (simplices.empty())
     raise(SetupErrorKind::bad_argument, "a curved surface without triangles", "Pass nullptr to keep edges straight");
   tree_ = SimplexTree(std::move(simplices));
-  const Box box = palpate::box_of(mesh.positions), other = tree_.box();
+  const Box box = detail::box_of(mesh.positions), other = tree_.box();
   for (int k = 0; k < 3; ++k)
     if (other.low[k] > box.high[k] || other.high[k] < box.low[k])
       raise(SetupErrorKind::bad_argument, "the curved surface does not meet the bounding box of the mesh",

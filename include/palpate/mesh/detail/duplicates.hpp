@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Local length at each node [m]: of the elements around it, the smallest value of their longest edges, ignoring
 /// elements of size zero. Zero if there is none. O(elements).
@@ -27,8 +27,6 @@ struct CoincidentNodes {
   std::vector<NodeId> representative;
   std::vector<double> distance;
 };
-
-namespace detail {
 
 inline double longest_edge_of(const MeshRef& mesh, Index e) noexcept {
   const NodeId* nodes = mesh.nodes_of(e);
@@ -110,12 +108,10 @@ inline std::vector<char> used_nodes(const MeshRef& mesh) {
   return used;
 }
 
-}  // namespace detail
-
 inline std::vector<double> node_sizes(const MeshRef& mesh) {
   std::vector<double> sizes(static_cast<std::size_t>(mesh.node_count), 0.0);
   for (Index e = 0; e < mesh.element_count; ++e) {
-    const double size = detail::longest_edge_of(mesh, e);
+    const double size = longest_edge_of(mesh, e);
     if (!(size > 0.0)) continue;
     const NodeId* nodes = mesh.nodes_of(e);
     for (int a = 0; a < mesh.element.nodes; ++a) {
@@ -134,9 +130,9 @@ inline CoincidentNodes coincident_nodes(const MeshRef& mesh, double tolerance) {
   CoincidentNodes result{std::vector<NodeId>(n), std::vector<double>(n, 0.0)};
   std::iota(result.representative.begin(), result.representative.end(), NodeId{0});
   if (n == 0 || mesh.element_count == 0) return result;
-  std::vector<char> skip = detail::used_nodes(mesh);  // unused, or already given a representative
+  std::vector<char> skip = used_nodes(mesh);  // unused, or already given a representative
   for (char& s : skip) s = s == 0 ? 1 : 0;
-  const detail::CoincidenceSearch search(mesh, node_sizes(mesh), tolerance);
+  const CoincidenceSearch search(mesh, node_sizes(mesh), tolerance);
   std::vector<NodeId> group;
   for (std::size_t rank = 0; rank < n; ++rank) {
     if (skip[static_cast<std::size_t>(search.node_at(rank))] != 0) continue;
@@ -170,11 +166,11 @@ inline std::vector<Index> first_equal_elements(const MeshRef& mesh) {
 /// The same for any mesh.
 template <Element E, MeshOf<E> M>
 CoincidentNodes coincident_nodes(const M& mesh, double tolerance) {
-  return coincident_nodes(detail::plain_view<E>(mesh).mesh, tolerance);
+  return coincident_nodes(plain_view<E>(mesh).mesh, tolerance);
 }
 template <Element E, MeshOf<E> M>
 std::vector<Index> first_equal_elements(const M& mesh) {
-  return first_equal_elements(detail::plain_view<E>(mesh).mesh);
+  return first_equal_elements(plain_view<E>(mesh).mesh);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

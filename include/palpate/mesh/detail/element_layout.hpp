@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/element.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A kind of face of an element. Its triangles are those of TriangulatedFace; there are none if tools cannot touch it.
 struct FaceLayout {
@@ -39,8 +39,6 @@ struct ElementLayout {
   }
 };
 
-namespace detail {
-
 /// E::faces, concatenated.
 template <Element E>
 inline constexpr auto flat_faces = [] {
@@ -74,16 +72,14 @@ void write_reference_nodes(double* xyz) noexcept {
     for (int c = 0; c < 3; ++c) xyz[3 * a + c] = x.coeff(a, c);
 }
 
-}  // namespace detail
-
 /// The layout of element E.
 template <Element E>
 inline constexpr ElementLayout element_layout{E::nodes,
                                               E::order,
                                               static_cast<int>(E::faces.size()),
-                                              detail::face_layout<typename E::Face>(),
-                                              detail::small_face_layout<E>(),
-                                              detail::flat_faces<E>.data(),
-                                              &detail::write_reference_nodes<E>};
+                                              face_layout<typename E::Face>(),
+                                              small_face_layout<E>(),
+                                              flat_faces<E>.data(),
+                                              &write_reference_nodes<E>};
 
-}}  // namespace palpate::PALPATE_ABI
+}}}  // namespace palpate::detail

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The mean of an element's reference nodes.
 template <Element E>
@@ -164,4 +164,4 @@ class ElementSearch {
   std::vector<Index> start_, element_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Up to N node ids, compared lexicographically.
 template <std::size_t N>
@@ -56,4 +56,4 @@ FaceIds<E> face_ids(const M& mesh, Index e, std::size_t f) {
   return ids;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -12,13 +12,11 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Allowed deviation of the length of a fibre direction from one: files print six digits or fewer. Materials normalise
 /// it.
 inline constexpr double fibre_length_tolerance = 1e-5;
-
-namespace detail {
 
 /// Refuses a number of fibres that differs from the number of elements.
 inline void require_fibre_count(std::size_t fibres, Index element_count) {
@@ -49,8 +47,6 @@ inline void require_unit_vectors(std::span<const Vector3> fibres) {
   raise(std::move(p));
 }
 
-}  // namespace detail
-
 /// Refuses as bad_argument fibre directions that are not unit vectors (zero and NaN included), with the ids of their
 /// elements and the worst length, and a number of fibres that differs from the number of elements. O(elements); no cost
 /// for a mesh without fibres.
@@ -58,16 +54,15 @@ template <MeshView M>
 void require_unit_fibres(const M& mesh) {
   if constexpr (FibreMesh<M>) {
     if (!mesh.has_fibres()) return;
-    if constexpr (requires { mesh.fibres.size(); })
-      detail::require_fibre_count(mesh.fibres.size(), mesh.element_count());
+    if constexpr (requires { mesh.fibres.size(); }) require_fibre_count(mesh.fibres.size(), mesh.element_count());
     if constexpr (requires { std::span<const Vector3>(mesh.fibres); }) {
-      detail::require_unit_vectors(mesh.fibres);
+      require_unit_vectors(mesh.fibres);
     } else {
       std::vector<Vector3> fibres;
       for (Index e = 0; e < mesh.element_count(); ++e) fibres.emplace_back(mesh.fibre(e));
-      detail::require_unit_vectors(fibres);
+      require_unit_vectors(fibres);
     }
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

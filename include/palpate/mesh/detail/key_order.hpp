@@ -8,9 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The numbers that distinguish most keys with the same first number, stored compactly.
 struct ShortKey {
@@ -37,8 +35,6 @@ class LessKey {
   int width_;
 };
 
-}  // namespace detail
-
 /// The order of keys of `width` numbers each, compared lexicographically; equal keys are ordered by their place in
 /// `keys`. The first number of each must be 0 ... node_count - 1. O(keys) for sets of nodes of a mesh; allocates.
 inline std::vector<Index> key_order(const std::vector<NodeId>& keys, int width, Index node_count) {
@@ -48,13 +44,13 @@ inline std::vector<Index> key_order(const std::vector<NodeId>& keys, int width, 
   const NodeId* key = keys.data();
   for (Index i = 0; i < count; ++i, key += width) ++start[static_cast<std::size_t>(key[0]) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<detail::ShortKey> sorted(static_cast<std::size_t>(count));
+  std::vector<ShortKey> sorted(static_cast<std::size_t>(count));
   std::vector<Index> next(start.begin(), start.end() - 1);
   key = keys.data();
   for (Index i = 0; i < count; ++i, key += width)
     sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(key[0])]++)] = {width > 1 ? key[1] : 0,
                                                                                   width > 2 ? key[2] : 0, i};
-  const detail::LessKey less(keys.data(), width);
+  const LessKey less(keys.data(), width);
   for (std::size_t i = 0; i + 1 < start.size(); ++i)
     std::sort(sorted.begin() + start[i], sorted.begin() + start[i + 1], less);
   std::vector<Index> order(sorted.size());
@@ -62,4 +58,4 @@ inline std::vector<Index> key_order(const std::vector<NodeId>& keys, int width, 
   return order;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

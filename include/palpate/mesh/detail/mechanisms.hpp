@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The parts of a mesh whose elements are connected by faces, numbered in the order of their lowest element.
 struct MeshParts {
@@ -54,7 +54,7 @@ void require_constrained(const Mesh<E>& mesh, std::span<const std::uint8_t> cons
   require_no_mechanism(mesh_ref(mesh), constrained, origin);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/mesh/detail/mechanisms.ipp>

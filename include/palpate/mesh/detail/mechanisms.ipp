@@ -10,9 +10,7 @@
 #include <numeric>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 inline Index find_part(std::vector<Index>& parent, Index e) noexcept {
   const auto at = [&](Index i) -> Index& { return parent[static_cast<std::size_t>(i)]; };
@@ -213,20 +211,18 @@ class JointedParts {
   std::vector<std::vector<std::size_t>> users_;  ///< parts of every node, ascending
 };
 
-}  // namespace detail
-
 PALPATE_INLINE MeshParts face_connected_parts(const MeshRef& mesh) {
-  const detail::SortedFaces faces = detail::sorted_faces(mesh);
+  const SortedFaces faces = sorted_faces(mesh);
   std::vector<Index> parent(static_cast<std::size_t>(mesh.element_count));
   std::iota(parent.begin(), parent.end(), Index{0});
   for (Index i = 1; i < faces.count(); ++i) {
     if (!std::equal(faces.key(i), faces.key(i) + faces.width, faces.key(i - 1))) continue;
-    const Index a = detail::find_part(parent, faces.element(i - 1)), b = detail::find_part(parent, faces.element(i));
+    const Index a = find_part(parent, faces.element(i - 1)), b = find_part(parent, faces.element(i));
     parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
   MeshParts parts{std::vector<Index>(parent.size(), -1), 0};
   for (std::size_t e = 0; e < parent.size(); ++e) {
-    const auto root = static_cast<std::size_t>(detail::find_part(parent, static_cast<Index>(e)));
+    const auto root = static_cast<std::size_t>(find_part(parent, static_cast<Index>(e)));
     parts.of_element[e] = root == e ? parts.count++ : parts.of_element[root];
   }
   return parts;
@@ -239,7 +235,7 @@ PALPATE_INLINE std::optional<Mechanism> find_mechanism(const MeshRef& mesh, std:
           "Give one of each per node");
   const MeshParts parts = face_connected_parts(mesh);
   if (parts.count == connected_components(mesh).count) return std::nullopt;
-  return detail::JointedParts(mesh, parts, constrained, origin).find();
+  return JointedParts(mesh, parts, constrained, origin).find();
 }
 
 PALPATE_INLINE void require_no_mechanism(const MeshRef& mesh, std::span<const std::uint8_t> constrained,
@@ -260,4 +256,4 @@ PALPATE_INLINE void require_no_mechanism(const MeshRef& mesh, std::span<const st
   raise(std::move(p));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

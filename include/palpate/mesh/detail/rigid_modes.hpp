@@ -12,9 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Up to six rigid motions (w, t).
 using RigidMotions = std::vector<Vector6>;
@@ -29,8 +27,6 @@ inline Vector3 shift_of(const Vector6& motion) noexcept {
 /// One name per motion: translations first, then rotations, each about its own axis.
 std::vector<std::string> name_rigid_motions(const RigidMotions& motions, const Vector3& centre, double size);
 
-}  // namespace detail
-
 /// The rigid motions that a component can still make.
 struct FreeRigidModes {
   Index component = 0;
@@ -40,8 +36,6 @@ struct FreeRigidModes {
 
   int count() const noexcept { return static_cast<int>(modes.size()); }
 };
-
-namespace detail {
 
 /// Nodes of each component, by counting sort. Nodes of component -1 are left out.
 std::vector<std::vector<NodeId>> nodes_by_component(std::span<const NodeId> component);
@@ -69,8 +63,6 @@ Vector6 remainder(const std::vector<Vector6>& basis, Vector6 v);
 /// have the same weight as one. O(6 rows).
 RigidMotions free_motions(std::span<const Vector3> positions, std::span<const NodeId> nodes,
                           std::span<const std::uint8_t> constrained, const RigidFrame& frame);
-
-}  // namespace detail
 
 /// The free rigid motions of each component, in the order of the components: from none (constrained) to six (free
 /// body). `component[i]` is the component of node i, -1 to leave it out (mesh/detail/components.hpp); bit a of
@@ -103,12 +95,12 @@ MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> c
   if (constrained.size() != mesh.positions.size())
     raise(SetupErrorKind::bad_argument, "positions and constraints have different lengths",
           "Give one of each per node");
-  const auto pieces = detail::nodes_by_component(connected_components<E>(mesh).of_node);
+  const auto pieces = nodes_by_component(connected_components<E>(mesh).of_node);
   MatrixX modes(3 * mesh.node_count(), 0);
   for (const std::vector<NodeId>& nodes : pieces) {
     if (nodes.empty()) continue;
-    const detail::RigidFrame frame(mesh.positions, nodes, constrained);
-    const detail::RigidMotions motions = detail::free_motions(mesh.positions, nodes, constrained, frame);
+    const RigidFrame frame(mesh.positions, nodes, constrained);
+    const RigidMotions motions = free_motions(mesh.positions, nodes, constrained, frame);
     const Index first = modes.cols();
     const auto count = static_cast<Index>(motions.size());
     modes.conservativeResize(Eigen::NoChange, first + count);
@@ -117,14 +109,14 @@ MatrixX rigid_displacements(const Mesh<E>& mesh, std::span<const std::uint8_t> c
       for (Index k = 0; k < count; ++k) {
         const Vector6& motion = motions[static_cast<std::size_t>(k)];
         const Vector3 p = (mesh.position(Index{node}) - frame.centre) / frame.size;
-        const Vector3 u = detail::shift_of(motion) + cross(detail::rotation_of(motion), p);
+        const Vector3 u = shift_of(motion) + cross(rotation_of(motion), p);
         for (int c = 0; c < 3; ++c) modes(3 * Index{node} + c, first + k) = u[c];
       }
   }
   return modes;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/mesh/detail/rigid_modes.ipp>

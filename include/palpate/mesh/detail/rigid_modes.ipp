@@ -11,9 +11,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Three numbers with three digits, or more if they are large compared with `scale`: a point far from zero is accurate
 /// to a hundredth of `scale`. Rounding errors print as 0.
@@ -178,8 +176,6 @@ PALPATE_INLINE RigidMotions free_motions(std::span<const Vector3> positions, std
   return {basis.begin() + seen, basis.end()};
 }
 
-}  // namespace detail
-
 PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vector3> positions,
                                                             std::span<const NodeId> component,
                                                             std::span<const std::uint8_t> constrained,
@@ -188,14 +184,14 @@ PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vect
     raise(SetupErrorKind::bad_argument, "positions, components and constraints have different lengths",
           "Give one of each per node");
   std::vector<FreeRigidModes> result;
-  for (const std::vector<NodeId>& nodes : detail::nodes_by_component(component)) {
+  for (const std::vector<NodeId>& nodes : nodes_by_component(component)) {
     FreeRigidModes modes{static_cast<Index>(result.size()), static_cast<Index>(nodes.size()), {}, {}};
     if (!nodes.empty()) {
       modes.first_nodes.assign(
           nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(std::min(nodes.size(), SetupProblem::max_ids)));
-      const detail::RigidFrame frame(positions, nodes, constrained);
-      modes.modes = detail::name_rigid_motions(detail::free_motions(positions, nodes, constrained, frame),
-                                               origin + frame.centre, frame.size);
+      const RigidFrame frame(positions, nodes, constrained);
+      modes.modes =
+          name_rigid_motions(free_motions(positions, nodes, constrained, frame), origin + frame.centre, frame.size);
     }
     result.push_back(std::move(modes));
   }
@@ -223,4 +219,4 @@ PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std:
   raise(std::move(p));
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -35,7 +35,7 @@ class TargetDistance {
 /// Collects the simplices of targets and checks them.
 class TargetReader {
  public:
-  explicit TargetReader(const Mesh<Tet4>& mesh) : mesh_(&mesh), box_(palpate::box_of(mesh.positions)) {}
+  explicit TargetReader(const Mesh<Tet4>& mesh) : mesh_(&mesh), box_(detail::box_of(mesh.positions)) {}
 
   void operator()(const std::string& name) { add_part(name); }
   void operator()(const std::vector<NodeId>& nodes) { add_part(nodes); }

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// An admitted mesh, translated so that the centre of its bounding box is the origin.
 template <Element E>
@@ -47,8 +47,6 @@ AdmittedMesh<E> admit_mesh(const Given& mesh, const Scene& scene, const Admissio
   return {std::move(admitted.mesh), std::move(admitted.node_map), std::move(ids), origin};
 }
 
-namespace detail {
-
 /// Admits a mesh and evaluates its materials. Reports what admission found. Throws the errors of materials_by_region
 /// and admit.
 template <Element E, LinearMaterial M, MeshOf<E> Given>
@@ -61,6 +59,4 @@ AdmittedBody admit_body(const Given& mesh, const Scene& scene, const RegionMater
   return {std::move(body), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin};
 }
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

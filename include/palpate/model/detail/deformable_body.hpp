@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Forces, conditions, loads and mass of a body, independent of its elements and materials. Vectors have 3 entries per
 /// node.
@@ -55,8 +55,6 @@ inline void require_mass(const DeformableBody& body) {
       raise_at(SetupIds::nodes, i, SetupErrorKind::bad_density, "a node has no mass",
                "Give every region a density in kg/m^3");
 }
-
-namespace detail {
 
 /// Everything except the forces and the mass.
 template <Element E>
@@ -107,16 +105,14 @@ auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
   return make_body(std::move(mesh), materials);
 }
 
-}  // namespace detail
-
 // The functions below do not check the geometry of a body (flat and inverted elements): make bodies from admitted
 // meshes (mesh/admission.hpp). Equilibrium and HapticFEModel admit their meshes.
 
 /// A hyperelastic body in a scene. Throws the errors of assembly and conditions, and unsupported for initial strains.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-  detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+  refuse_initial_strains(scene);
+  DeformableBody made = body_with_mass(body.rest, scene, limits);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -124,8 +120,8 @@ DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& sc
 /// The same for statics: without mass. Also throws unconstrained when the body can move rigidly in the scene.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-  detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::constrained_body_without_forces(body.rest, scene);
+  refuse_initial_strains(scene);
+  DeformableBody made = constrained_body_without_forces(body.rest, scene);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -135,7 +131,7 @@ template <Element E>
 DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
-  DeformableBody made = detail::body_with_mass(body, scene, limits);
+  DeformableBody made = body_with_mass(body, scene, limits);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
@@ -145,7 +141,7 @@ DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const Setu
 template <Element E>
 DeformableBody make_constrained_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>, "palpate: for statics at small strain with smoothed elements use HapticFEModel");
-  DeformableBody made = detail::constrained_body_without_forces(body, scene);
+  DeformableBody made = constrained_body_without_forces(body, scene);
   made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
@@ -156,8 +152,8 @@ template <Element E>
 DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
-  detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::body_with_mass(body.fast, scene, limits);
+  refuse_initial_strains(scene);
+  DeformableBody made = body_with_mass(body.fast, scene, limits);
   made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
   return made;
 }
@@ -167,10 +163,10 @@ template <Element E>
 DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
   static_assert(!HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mesh");
-  detail::refuse_initial_strains(scene);
-  DeformableBody made = detail::constrained_body_without_forces(body.fast, scene);
+  refuse_initial_strains(scene);
+  DeformableBody made = constrained_body_without_forces(body.fast, scene);
   made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
   return made;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -35,7 +35,7 @@ class ElasticBody {
   /// Throws unconstrained when the body can move rigidly. The error gives axes in the frame of the mesh as given.
   virtual void require_constrained(const EssentialConditions& conditions) const = 0;
   virtual EssentialConditions conditions(const Scene& scene) const = 0;
-  virtual Touchable touchable(const Scene& scene) const = 0;
+  virtual detail::Touchable touchable(const Scene& scene) const = 0;
   virtual std::vector<NodeId> rendered(const Scene& scene) const = 0;
 
   /// All loads of a scene except gravity [N].
@@ -58,11 +58,13 @@ class ElasticBody {
   /// The material of each of these elements at small strain; unknown if it is not isotropic.
   virtual std::vector<ContactMaterial> contact_materials(std::span<const Index> elements) const = 0;
   /// What its mesh makes of the compliance of a half-space, at these nodes. Allocates; on all threads.
-  virtual ProjectedHalfSpace half_space(std::span<const NodeId> touched, const EssentialConditions& conditions,
-                                        const SetupLimits& limits) const = 0;
-  virtual CacheKey key() const noexcept = 0;
+  virtual detail::ProjectedHalfSpace half_space(std::span<const NodeId> touched, const EssentialConditions& conditions,
+                                                const SetupLimits& limits) const = 0;
+  virtual detail::CacheKey key() const noexcept = 0;
   virtual void report_locking(SetupReport& report) const = 0;
 };
+
+namespace detail {
 
 /// An admitted body, translated so that the centre of its bounding box is the origin.
 struct AdmittedBody {
@@ -71,5 +73,7 @@ struct AdmittedBody {
   OriginalIds ids;               ///< ids of its nodes and elements in the mesh as given
   Vector3 origin;                ///< origin of its frame, in the frame of the mesh as given [m]
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -11,7 +11,7 @@
 
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A body of elements E.
 template <Element E>
@@ -51,8 +51,6 @@ class ElementBody final : public ElasticBody {
   Vector3 origin_;
 };
 
-namespace detail {
-
 template <Element E>
 const ElementBody<E>& element_body(const ElasticBody& body) noexcept {
   return static_cast<const ElementBody<E>&>(body);
@@ -72,8 +70,6 @@ std::vector<ContactMaterial> contact_materials(const Body<E>& body, std::span<co
   return materials;
 }
 
-}  // namespace detail
-
 template <Element E>
 ElementBody<E>::ElementBody(Body<E> body, const Vector3& origin)
     : body_(std::move(body)), boundary_(extract_boundary<E>(body_.mesh)), origin_(origin) {}
@@ -92,7 +88,7 @@ const std::vector<double>& ElementBody<E>::densities() const noexcept {
 }
 template <Element E>
 void ElementBody<E>::require_constrained(const EssentialConditions& conditions) const {
-  palpate::require_constrained(body_.mesh, conditions.constrained, origin_);
+  detail::require_constrained(body_.mesh, conditions.constrained, origin_);
 }
 template <Element E>
 EssentialConditions ElementBody<E>::conditions(const Scene& scene) const {
@@ -108,7 +104,7 @@ std::vector<NodeId> ElementBody<E>::rendered(const Scene& scene) const {
 }
 template <Element E>
 VectorX ElementBody<E>::applied_load(const Scene& scene) const {
-  return palpate::applied_load(body_, boundary_, scene);
+  return detail::applied_load(body_, boundary_, scene);
 }
 template <Element E>
 std::vector<Vector6> ElementBody<E>::initial_strains(const Scene& scene) const {
@@ -116,7 +112,7 @@ std::vector<Vector6> ElementBody<E>::initial_strains(const Scene& scene) const {
 }
 template <Element E>
 VectorX ElementBody<E>::initial_strain_load(const std::vector<Vector6>& strains) const {
-  return palpate::initial_strain_load(body_, strains);
+  return detail::initial_strain_load(body_, strains);
 }
 template <Element E>
 void ElementBody<E>::swap_initial_strains(std::vector<Vector6>& strains) noexcept {
@@ -149,7 +145,7 @@ CacheKey ElementBody<E>::key() const noexcept {
 }
 template <Element E>
 void ElementBody<E>::report_locking(SetupReport& report) const {
-  palpate::report_locking<E>(body_.elasticity, report);
+  detail::report_locking<E>(body_.elasticity, report);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Faces, triangles, normal and scale of the boundary at every node. Nodes inside the body have none. O(faces),
 /// allocates.
@@ -79,8 +79,6 @@ struct ElementFaceRules {
     return static_cast<int>(nodes) == small_nodes ? small_face : face;
   }
 };
-
-namespace detail {
 
 template <TriangulatedFace F>
 void add_face_point(FaceRule& rule, const Eigen::Vector2d& xi, double weight) {
@@ -165,15 +163,13 @@ FaceRules face_rules() {
   return rules;
 }
 
-}  // namespace detail
-
 /// The rules of element E, whose faces tools can touch.
 template <Element E>
 ElementFaceRules element_face_rules() {
-  ElementFaceRules rules{0, detail::face_rules<typename E::Face>(), {}};
+  ElementFaceRules rules{0, face_rules<typename E::Face>(), {}};
   if constexpr (HasSmallFace<E>) {
     rules.small_nodes = E::SmallFace::nodes;
-    rules.small_face = detail::face_rules<typename E::SmallFace>();
+    rules.small_face = face_rules<typename E::SmallFace>();
   }
   return rules;
 }
@@ -219,7 +215,7 @@ struct HalfSpaceSource {
   Vector3 position(NodeId node) const noexcept { return boundary.position(node); }
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/detail/half_space_source.ipp>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE BoundaryNodes::BoundaryNodes(const MeshRef& mesh, const std::vector<BoundaryFace>& faces)
     : positions_(mesh.positions), faces_(&faces), sharp_(static_cast<std::size_t>(mesh.node_count), false) {
@@ -86,4 +86,4 @@ PALPATE_INLINE double BoundaryNodes::length(NodeId node) const noexcept {
   return count > 0 ? sum / count : 0.0;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

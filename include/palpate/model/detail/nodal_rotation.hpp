@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// For chosen nodes, the rotation of the best-fitting affine motion of their neighbours (shape matching, Mueller et al.
 /// 2005, over one ring). O(neighbours), no allocation after set-up.
@@ -75,4 +75,4 @@ inline Matrix3 NodalRotations::gradient(std::size_t k, const VectorX& u) const n
   return f * inverse_[k];
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

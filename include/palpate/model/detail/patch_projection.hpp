@@ -7,7 +7,7 @@
 #include <palpate/contact/detail/half_space_field.hpp>
 #include <palpate/model/detail/half_space_source.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The elements within some layers of a node, and those of their nodes that are free to move there: nodes all of whose
 /// elements are in the patch, inside the body or on the same side of it. The side is what is reached from the node over
@@ -107,8 +107,6 @@ class ColumnBlocks {
   std::vector<Block> block_;
 };
 
-namespace detail {
-
 /// Whether the components that are prescribed, a bit each, have more than half of the normal.
 inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexcept {
   double part = 0.0;
@@ -116,8 +114,6 @@ inline bool is_fixed_along(const Vector3& normal, std::uint8_t components) noexc
     if ((components >> c & 1) != 0) part += normal[c] * normal[c];
   return part > 0.5;
 }
-
-}  // namespace detail
 
 /// The compliance of a touched vertex to the force on the vertex in the middle of a patch.
 struct PatchEntry {
@@ -164,7 +160,7 @@ class PatchProjection {
   int layers_across_ = 0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/detail/patch_projection.ipp>

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE NodePatch::NodePatch(const HalfSpaceSource& source)
     : source_(source),
@@ -273,14 +273,14 @@ PALPATE_INLINE bool PatchProjection::solve_dense() {
   const Index size = matrix_.rows();
   solution_.resize(size, 3);
   bool good = right_.allFinite() && matrix_.diagonal().allFinite();
-  return good && detail::attempt_unless_refused([&] {
+  return good && attempt_unless_refused([&] {
            DenseCholesky factor(matrix_, {});
            VectorX product(size);
            for (Index c = 0; c < 3; ++c) {
              b_ = right_.col(c);
              x_.resize(size);
              factor.solve_into(b_, x_);
-             detail::symmetric_product(matrix_, x_.data(), product.data());
+             symmetric_product(matrix_, x_.data(), product.data());
              good = good && (product - b_).norm() <= largest_residual * b_.norm();
              solution_.col(c) = x_;
            }
@@ -305,7 +305,7 @@ PALPATE_INLINE double PatchProjection::depth_below(NodeId node, NodeId middle, c
 PALPATE_INLINE double PatchProjection::support_below(NodeId middle, const Vector3& normal) const noexcept {
   double nearest = infinity;
   for (const NodeId n : patch_.nodes())
-    if (detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)]))
+    if (is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(n)]))
       nearest = std::min(nearest, depth_below(n, middle, normal));
   return nearest / source_.boundary.length(middle);
 }
@@ -315,7 +315,7 @@ PALPATE_INLINE bool PatchProjection::is_free_side_below(NodeId node, NodeId midd
                                                         const Vector3& normal) const noexcept {
   constexpr double opposite = -0.5;
   return source_.boundary.is_on_boundary(node) && source_.boundary.normal(node).dot(normal) < opposite &&
-         !detail::is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(node)]) &&
+         !is_fixed_along(normal, source_.constrained[static_cast<std::size_t>(node)]) &&
          depth_below(node, middle, normal) < infinity;
 }
 
@@ -352,4 +352,4 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   std::ranges::sort(entries, {}, &PatchEntry::vertex);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

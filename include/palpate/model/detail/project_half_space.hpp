@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The isotropic materials that stand for those of the elements at vertices, with the same bulk modulus and mean shear
 /// stiffness. `material_of` has the elasticity matrix of every element. `ratios` receives their different Poisson
@@ -83,7 +83,7 @@ ProjectedHalfSpace project_half_space(const Body<E>& body, const std::vector<Bou
                             limits);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/detail/project_half_space.ipp>

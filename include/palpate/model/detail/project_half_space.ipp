@@ -12,9 +12,7 @@
 #include <memory>
 #include <string>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Largest difference of a material from the isotropic one with the same moduli, relative to its largest entry.
 inline double anisotropy(const Matrix6& d) noexcept {
@@ -102,8 +100,6 @@ inline bool is_uniform_near(NodeId node, const MeshRef& mesh, const NodeElements
   return true;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE std::vector<VertexMaterial> vertex_materials(const MeshRef& mesh, std::span<const NodeId> touched,
                                                             const NodeElements& around,
                                                             std::span<const Matrix6> elasticities,
@@ -113,19 +109,17 @@ PALPATE_INLINE std::vector<VertexMaterial> vertex_materials(const MeshRef& mesh,
   for (const NodeId node : touched)
     for (const NodeId e : around.of(node))
       used[static_cast<std::size_t>(material_of[static_cast<std::size_t>(e)])] = true;
-  const auto materials = detail::equivalent_materials(elasticities, used, ratios);
+  const auto materials = equivalent_materials(elasticities, used, ratios);
   std::vector<int> votes(ratios.size());
   std::vector<VertexMaterial> result;
   for (const NodeId node : touched) {
-    VertexMaterial& mean = result.emplace_back(detail::mean_material(around.of(node), material_of, materials, votes));
+    VertexMaterial& mean = result.emplace_back(mean_material(around.of(node), material_of, materials, votes));
     mean.poisson_ratio = ratios[static_cast<std::size_t>(mean.stiffness)];
-    if (elasticities.size() > 1 && !detail::is_uniform_near(node, mesh, around, material_of, materials))
+    if (elasticities.size() > 1 && !is_uniform_near(node, mesh, around, material_of, materials))
       mean.marks.set(HalfSpaceMark::several_materials);
   }
   return result;
 }
-
-namespace detail {
 
 /// Projects all vertices of a source and collects the results.
 class HalfSpaceTable {
@@ -322,12 +316,10 @@ inline void require_sizes(const HalfSpaceSource& source) {
           "Give a material per touched vertex, a mark per node, and the stiffness of all nodes");
 }
 
-}  // namespace detail
-
 PALPATE_INLINE ProjectedHalfSpace project_half_space(const HalfSpaceSource& source, const SetupLimits& limits) {
   if (source.touched.empty()) return {};
-  detail::require_sizes(source);
-  return detail::HalfSpaceTable(source, limits).make();
+  require_sizes(source);
+  return HalfSpaceTable(source, limits).make();
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

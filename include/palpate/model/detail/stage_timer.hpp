@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Its destructor writes the time since construction [s] to a report. The constructor allocates the line in the report,
 /// because a destructor must not run out of memory.
@@ -33,4 +33,4 @@ inline StageTimer::~StageTimer() {
   report_->seconds[line_].second = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

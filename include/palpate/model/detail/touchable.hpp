@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The touchable surface: its sorted nodes, and its outward triangles as indices of those nodes. Faces with more than
 /// three nodes are divided into the triangles listed by their face element.
@@ -43,7 +43,7 @@ void require_vertex_forces(std::span<const VertexForce> forces, int vertices);
 std::vector<NodeId> resolve_rendered(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                      const Scene& scene);
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/detail/touchable.ipp>

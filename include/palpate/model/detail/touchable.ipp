@@ -9,14 +9,12 @@
 #include <string>
 #include <variant>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void sort_unique(std::vector<NodeId>& nodes) {
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
-
-namespace detail {
 
 /// The faces of the boundary that are not among `touched`, for any order of their nodes.
 inline std::vector<BoundaryFace> other_faces(const std::vector<BoundaryFace>& boundary,
@@ -29,8 +27,6 @@ inline std::vector<BoundaryFace> other_faces(const std::vector<BoundaryFace>& bo
     if (!std::ranges::binary_search(keys, face.key())) others.push_back(face);
   return others;
 }
-
-}  // namespace detail
 
 PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
                                            const Scene& scene) {
@@ -46,8 +42,8 @@ PALPATE_INLINE Touchable resolve_touchable(const MeshRef& mesh, const std::vecto
   }
   for (const auto& face : faces) touchable.nodes.insert(touchable.nodes.end(), face.nodes.begin(), face.nodes.end());
   sort_unique(touchable.nodes);
-  const std::vector<BoundaryFace> touched = detail::sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
-  const std::vector<BoundaryFace> rest = detail::other_faces(boundary, touched);
+  const std::vector<BoundaryFace> touched = sort_unique(faces, mesh.element.face.nodes, mesh.node_count);
+  const std::vector<BoundaryFace> rest = other_faces(boundary, touched);
   for (const auto& face : rest)
     for (const NodeId node : face.nodes)
       if (!std::ranges::binary_search(touchable.nodes, node)) touchable.shell_nodes.push_back(node);
@@ -101,4 +97,4 @@ PALPATE_INLINE std::vector<NodeId> resolve_rendered(const MeshRef& mesh, const s
   return rendered;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

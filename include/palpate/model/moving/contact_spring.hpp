@@ -11,8 +11,12 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Maximum number of springs of a motion.
 inline constexpr std::size_t most_springs = 2048;
+
+}  // namespace detail
 
 /// A spring that pushes a point of the surface along a direction, and pulls it only where a tool holds it.
 struct ContactSpring {
@@ -40,6 +44,8 @@ struct ContactSpring {
   }
 };
 
+namespace detail {
+
 /// Copies at most `most_springs` into a vector with room for them.
 inline void copy_springs(std::span<const ContactSpring> springs, std::vector<ContactSpring>& into) noexcept {
   const auto count = static_cast<std::ptrdiff_t>(std::min(springs.size(), most_springs));
@@ -56,5 +62,7 @@ inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& 
   }
   return energy;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -38,7 +38,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// extent(), the size of the body [m]. Only the constructor allocates.
 class ProximalDescent {
  public:
-  ProximalDescent(TangentSolver& tangent, Index size);
+  ProximalDescent(detail::TangentSolver& tangent, Index size);
 
   /// Forgets the softest mode, from which a run starts.
   void forget() noexcept;
@@ -116,7 +116,7 @@ class ProximalDescent {
     }
   }
 
-  TangentSolver& tangent_;
+  detail::TangentSolver& tangent_;
   VectorX residual_, step_, centre_, mode_;
 };
 
@@ -162,9 +162,9 @@ class Equilibrium {
   /// unconstrained.
   template <Element E, LargeStrainMaterial M>
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
-      : Equilibrium(make_constrained_body(std::move(body), scene, limits), limits) {}
+      : Equilibrium(detail::make_constrained_body(std::move(body), scene, limits), limits) {}
   /// From a constrained body of an admitted mesh, with or without mass, at small or large strain.
-  explicit Equilibrium(DeformableBody body, const SetupLimits& limits = {});
+  explicit Equilibrium(detail::DeformableBody body, const SetupLimits& limits = {});
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
@@ -193,7 +193,7 @@ class Equilibrium {
   VectorX reactions() const;
   /// Moves the body out; no other function may be called afterwards. Positions of a body made from a mesh are relative
   /// to the centre of its bounding box.
-  DeformableBody release() &&;
+  detail::DeformableBody release() &&;
 
   // NewtonProblem, at the present loads
   Index size() const noexcept { return body_.conditions.free_count(); }
@@ -208,7 +208,7 @@ class Equilibrium {
 
  private:
   struct Prepared {
-    DeformableBody body;
+    detail::DeformableBody body;
     OriginalIds ids;
     std::vector<NodeId> node_map;
   };
@@ -217,16 +217,16 @@ class Equilibrium {
   static Prepared prepare(const Mesh<E>& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                           const EquilibriumOptions& options) {
     Admitted<E> admitted = admit<E>(mesh, options.admission);
-    Prepared prepared{{}, original_ids(admitted), std::move(admitted.node_map)};
+    Prepared prepared{{}, detail::original_ids(admitted), std::move(admitted.node_map)};
     const ScopedIdTranslation translation(prepared.ids);
     const Vector3 origin = 0.5 * (admitted.admitted.box_min + admitted.admitted.box_max);
     for (Vector3& x : admitted.mesh.positions) x -= origin;
     const Scene mapped = scene.mapped(prepared.node_map, origin);
-    require_constrained(admitted.mesh,
-                        resolve_essential(admitted.mesh, extract_boundary<E>(admitted.mesh), mapped).constrained,
-                        origin);
-    prepared.body =
-        make_constrained_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped, options.limits);
+    detail::require_constrained(
+        admitted.mesh, detail::resolve_essential(admitted.mesh, extract_boundary<E>(admitted.mesh), mapped).constrained,
+        origin);
+    prepared.body = detail::make_constrained_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped,
+                                                  options.limits);
     return prepared;
   }
   Equilibrium(Prepared prepared, const SetupLimits& limits);
@@ -246,18 +246,18 @@ class Equilibrium {
 
   /// Goes from the equilibrium at the current loads to that at another fraction: a tangent step, then Newton's method,
   /// then `settle` where tangents are not positive definite.
-  NewtonReport advance(NewtonMethod& newton, double to) noexcept;
+  NewtonReport advance(detail::NewtonMethod& newton, double to) noexcept;
 
   /// Minimises the potential at the current loads: from an unstable equilibrium (a column under axial compression), or
   /// where Newton's method met tangents that are not positive definite.
-  NewtonReport settle(NewtonMethod& newton) noexcept;
+  NewtonReport settle(detail::NewtonMethod& newton) noexcept;
   /// True if the tangent stiffness at x_ is positive definite.
   bool is_stable() noexcept;
 
   OriginalIds ids_;
   std::vector<NodeId> node_map_;
-  DeformableBody body_;
-  TangentSolver tangent_;
+  detail::DeformableBody body_;
+  detail::TangentSolver tangent_;
   VectorX displacement_, force_, full_, prescribed_, load_, from_prescribed_, from_load_;
   ProximalDescent descent_;
   VectorX x_, start_, residual_, direction_;

@@ -9,7 +9,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ProximalDescent::ProximalDescent(TangentSolver& tangent, Index size)
+PALPATE_INLINE ProximalDescent::ProximalDescent(detail::TangentSolver& tangent, Index size)
     : tangent_(tangent), residual_(size), step_(size), centre_(size), mode_(size) {
   forget();
 }
@@ -81,7 +81,7 @@ PALPATE_INLINE Equilibrium::Equilibrium(Prepared& prepared, const SetupLimits& l
   node_map_ = std::move(prepared.node_map);
 }
 
-PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& limits)
+PALPATE_INLINE Equilibrium::Equilibrium(detail::DeformableBody body, const SetupLimits& limits)
     : body_(std::move(body)),
       tangent_(body_.pattern, body_.conditions, body_.positions, limits),
       displacement_(VectorX::Zero(body_.elastic->size())),
@@ -96,7 +96,7 @@ PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& 
       start_(x_),
       residual_(x_),
       direction_(x_),
-      size_(palpate::extent(body_.positions)) {
+      size_(palpate::detail::extent(body_.positions)) {
   body_.elastic->tangent(displacement_, tangent_.matrix());
   if (!body_.elastic->is_linear()) rounding_ = tangent_.rounding(size_);
 }
@@ -132,12 +132,12 @@ PALPATE_INLINE EquilibriumReport Equilibrium::step(double dt, const EquilibriumP
 }
 
 PALPATE_INLINE void Equilibrium::set_load(const VectorX& load) {
-  require_entries(load, displacement_.size());
+  detail::require_entries(load, displacement_.size());
   body_.load = load;
 }
 
 PALPATE_INLINE void Equilibrium::set_prescribed(const VectorX& values) {
-  require_entries(values, displacement_.size());
+  detail::require_entries(values, displacement_.size());
   body_.conditions.prescribed = values;
 }
 
@@ -153,7 +153,7 @@ PALPATE_INLINE VectorX Equilibrium::reactions() const {
   return r;
 }
 
-PALPATE_INLINE DeformableBody Equilibrium::release() && {
+PALPATE_INLINE detail::DeformableBody Equilibrium::release() && {
   end();
   return std::move(body_);
 }
@@ -201,7 +201,7 @@ PALPATE_INLINE void Equilibrium::end() noexcept {
 
 PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumParameters& parameters) {
   EquilibriumReport report;
-  NewtonMethod newton(size(), parameters.newton);
+  detail::NewtonMethod newton(size(), parameters.newton);
   descent_budget_ = 300;
   tolerance_ = parameters.newton.tolerance;
   go(0.0);
@@ -248,7 +248,7 @@ PALPATE_INLINE void Equilibrium::go(double fraction) noexcept {
   load_ = from_load_ + fraction * (body_.load - from_load_);
 }
 
-PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to) noexcept {
+PALPATE_INLINE NewtonReport Equilibrium::advance(detail::NewtonMethod& newton, double to) noexcept {
   indefinite_ = 0;
   if (!prepare(x_)) return {};
   body_.elastic->force(displacement_, force_);
@@ -268,7 +268,7 @@ PALPATE_INLINE NewtonReport Equilibrium::advance(NewtonMethod& newton, double to
   return settled;
 }
 
-PALPATE_INLINE NewtonReport Equilibrium::settle(NewtonMethod& newton) noexcept {
+PALPATE_INLINE NewtonReport Equilibrium::settle(detail::NewtonMethod& newton) noexcept {
   NewtonReport report;
   for (int k = 0; k < 3 && descent_budget_ > 0; ++k) {
     int count = 0;

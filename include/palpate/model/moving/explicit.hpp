@@ -32,6 +32,8 @@ struct ExplicitParameters {
   int maximum_substeps = 200;  ///< per step; more are refused: at set-up bad_argument, later step_refused
 };
 
+namespace detail {
+
 /// TissueMotion on an ExplicitMotion. A step consists of equal stable substeps; a correction repeats them with the new
 /// forces. The response to a force (`respond`) is found by taking the step with that force.
 template <ForceOperator Force, ExplicitScheme Scheme>
@@ -153,8 +155,6 @@ class ExplicitTissueMotion final : public TissueMotion {
   typename ExplicitMotion<Force, Scheme>::Checkpoint start_, end_;
 };
 
-namespace detail {
-
 /// Whether the materials of a body are viscoelastic.
 template <class MaterialBody>
 inline constexpr bool has_history = false;
@@ -190,24 +190,25 @@ struct SolverTraits<Explicit<Scheme>> {
     made.large_strain = !made.accepts_initial_strains;
     made.start = VectorX::Zero(3 * rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
+      Equilibrium statics(detail::make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
-    const auto conditions = resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);
+    const auto conditions = detail::resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);
     const VectorX lumped = lumped_mass(rest);
-    const double bound = element_frequency_bound(rest);
+    const double bound = detail::element_frequency_bound(rest);
     made.motion = make(make_force(std::move(body), limits), lumped, conditions, bound, p);
     return made;
   }
   template <class Force>
   static std::unique_ptr<TissueMotion> make(Force force, const VectorX& lumped, const EssentialConditions& conditions,
                                             double bound, const Parameters& p) {
-    return std::make_unique<ExplicitTissueMotion<Force, Scheme>>(std::move(force), lumped, conditions, bound, p);
+    return std::make_unique<detail::ExplicitTissueMotion<Force, Scheme>>(std::move(force), lumped, conditions, bound,
+                                                                         p);
   }
   template <HyperelasticMaterial M>
   static auto make_force(HyperelasticBody<Tet4, M> body, const SetupLimits& limits) {
-    require_no_fibres(body);
-    return BatchedTetrahedra<M>(body, limits);
+    detail::require_no_fibres(body);
+    return detail::BatchedTetrahedra<M>(body, limits);
   }
   template <Element E, LargeStrainMaterial M>
   static auto make_force(HyperelasticBody<E, M> body, const SetupLimits& limits) {
@@ -215,7 +216,7 @@ struct SolverTraits<Explicit<Scheme>> {
   }
   template <Element E>
   static auto make_force(Body<E> body, const SetupLimits& limits) {
-    return LinearForces(assemble_stiffness<E>(body, limits));
+    return detail::LinearForces(assemble_stiffness<E>(body, limits));
   }
 };
 

@@ -13,6 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Wraps an ImplicitDynamics. A step whose iterations end early may leave a residual of a twentieth of the force.
 class ImplicitMotion final : public TissueMotion {
  public:
@@ -52,6 +54,8 @@ inline MotionStep ImplicitMotion::step(double h) noexcept {
   return step;
 }
 
+}  // namespace detail
+
 /// Newton's method on the incremental potential of a step, with a factorisation in every iteration. Supports all
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
 template <class Factor>
@@ -85,11 +89,11 @@ struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
     constexpr bool is_linear = requires {
       body.mesh;
     };
-    return prepare(make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
+    return prepare(detail::make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
   }
 
  private:
-  static PreparedMotion prepare(DeformableBody body, bool is_linear, const Parameters& parameters,
+  static PreparedMotion prepare(detail::DeformableBody body, bool is_linear, const Parameters& parameters,
                                 const SetupLimits& limits);
 };
 
@@ -100,11 +104,13 @@ struct CorotatedParameters {
   TimeScheme scheme = TimeScheme::implicit_euler();
   double mass_damping = 0.0;       ///< Rayleigh's alpha [1/s]
   double stiffness_damping = 0.0;  ///< Rayleigh's beta [s]
-  BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
+  detail::BoundedSolveParameters solve{.maximum_iterations = 40, .tolerance = 3e-3};
   int precondition_every = 16;  ///< steps between two updates of the preconditioner
   bool check = true;  ///< compare the energy after a step with that before it; costs one more force evaluation
   int maximum_linearisations = 8;  ///< per step, when the check fails
 };
+
+namespace detail {
 
 /// TissueMotion on a CorotatedMotion.
 template <class Base, class S, class Preconditioner>
@@ -137,6 +143,8 @@ class CorotatedTissueMotion final : public TissueMotion {
   Motion motion_;
 };
 
+}  // namespace detail
+
 template <class Preconditioner, class S>
 struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
   using Parameters = CorotatedParameters;
@@ -155,19 +163,20 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
     made.large_strain = true;
     made.start = VectorX::Zero(3 * body.rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
+      Equilibrium statics(detail::make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
-    const CorotatedMotionOptions options{
+    const detail::CorotatedMotionOptions options{
         p.scheme, p.mass_damping,          p.stiffness_damping, p.solve, p.precondition_every,
         p.check,  p.maximum_linearisations};
-    made.motion = std::make_unique<CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
+    made.motion =
+        std::make_unique<detail::CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
     return made;
   }
 };
 
-inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(DeformableBody body, bool is_linear,
-                                                                              const Parameters& p,
+inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(detail::DeformableBody body,
+                                                                              bool is_linear, const Parameters& p,
                                                                               const SetupLimits& limits) {
   PreparedMotion made;
   made.accepts_initial_strains = is_linear;
@@ -179,7 +188,7 @@ inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(De
     body = std::move(statics).release();
   }
   const DynamicsParameters parameters{p.scheme, p.mass_damping, p.stiffness_damping, p.mass, p.newton};
-  made.motion = std::make_unique<ImplicitMotion>(std::move(body), parameters, limits);
+  made.motion = std::make_unique<detail::ImplicitMotion>(std::move(body), parameters, limits);
   return made;
 }
 

@@ -45,7 +45,7 @@ class ImplicitDynamics {
  public:
   /// Starts at rest with zero displacement; the initial acceleration follows from the loads. Throws too_large,
   /// bad_density when a free node has no mass, bad_argument for negative damping and invalid parameters.
-  explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
+  explicit ImplicitDynamics(detail::DeformableBody body, const DynamicsParameters& parameters = {},
                             const SetupLimits& limits = {});
   ImplicitDynamics(const ImplicitDynamics&) = delete;
   ImplicitDynamics& operator=(const ImplicitDynamics&) = delete;
@@ -68,7 +68,7 @@ class ImplicitDynamics {
   const VectorX& displacement() const noexcept { return u_; }
   const VectorX& velocity() const noexcept { return v_; }
   const VectorX& acceleration() const noexcept { return a_; }
-  const DeformableBody& body() const noexcept { return body_; }
+  const detail::DeformableBody& body() const noexcept { return body_; }
 
   /// Sets the state; prescribed components take their prescribed values with zero velocity. The acceleration follows
   /// from the forces. For a viscoelastic body the change is sudden. Throws bad_argument, without a change, for vectors
@@ -113,7 +113,7 @@ class ImplicitDynamics {
   bool prepare_at(const VectorX& u) noexcept;
   void add_springs(const VectorX& u, BlockMatrix& k) const noexcept;
 
-  static DeformableBody checked(DeformableBody body, const DynamicsParameters& p);
+  static detail::DeformableBody checked(detail::DeformableBody body, const DynamicsParameters& p);
 
   /// Sets x_ to the predicted or the current state, whichever has the lower potential of the step.
   void start_from_the_lower() noexcept;
@@ -144,11 +144,11 @@ class ImplicitDynamics {
   void find_acceleration();
 
   DynamicsParameters parameters_;
-  DeformableBody body_;
-  TangentSolver tangent_;
-  ImplicitStep step_;
+  detail::DeformableBody body_;
+  detail::TangentSolver tangent_;
+  detail::ImplicitStep step_;
   BlockMatrix damping_;
-  NewtonMethod newton_;
+  detail::NewtonMethod newton_;
   VectorX u_, v_, a_, load_;
   VectorX prescribed_;                   // prescribed components at the end of the last step
   VectorX from_, unbalanced_, balance_;  // displacement and residual force at the start of a step; residual force now

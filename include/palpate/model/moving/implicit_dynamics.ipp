@@ -12,13 +12,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters,
+PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(detail::DeformableBody body, const DynamicsParameters& parameters,
                                                   const SetupLimits& limits)
     : parameters_(parameters),
       body_(checked(std::move(body), parameters)),
       tangent_(body_.pattern, body_.conditions, body_.positions, limits),
       step_(parameters.scheme, body_.elastic->size()),
-      damping_(parameters.stiffness_damping > 0.0 ? make_stiffness(body_.pattern, limits) : BlockMatrix()),
+      damping_(parameters.stiffness_damping > 0.0 ? detail::make_stiffness(body_.pattern, limits) : BlockMatrix()),
       newton_(size(), parameters.newton),
       u_(VectorX::Zero(body_.elastic->size())),
       v_(u_),
@@ -37,16 +37,16 @@ PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(DeformableBody body, const Dyn
       change_(size()),
       start_(size()),
       heaviest_(body_.lumped.maxCoeff()),
-      small_(std::sqrt(std::numeric_limits<double>::epsilon()) * extent(body_.positions)) {
-  springs_.reserve(most_springs);
+      small_(std::sqrt(std::numeric_limits<double>::epsilon()) * detail::extent(body_.positions)) {
+  springs_.reserve(detail::most_springs);
   body_.elastic->tangent(u_, tangent_.matrix());
-  if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(extent(body_.positions));
+  if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(detail::extent(body_.positions));
   find_acceleration();
 }
 
 PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   StepReport report;
-  if (!ImplicitStep::is_length(h)) return report;
+  if (!detail::ImplicitStep::is_length(h)) return report;
   begin(h);
   step_.coast(u_, v_, a_);
   prescribed_ = body_.conditions.prescribed;
@@ -104,7 +104,7 @@ PALPATE_INLINE bool ImplicitDynamics::respond(const VectorX& forces, VectorX& u)
 }
 
 PALPATE_INLINE bool ImplicitDynamics::prepare_response(double h) noexcept {
-  if (!ImplicitStep::is_length(h)) return false;
+  if (!detail::ImplicitStep::is_length(h)) return false;
   begin(h);
   return prepare_at(u_);
 }
@@ -118,7 +118,7 @@ PALPATE_INLINE void ImplicitDynamics::rest_at(const VectorX& u) {
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX& v, double seconds) {
-  for (const VectorX* given : {&u, &v}) require_entries(*given, u_.size());
+  for (const VectorX* given : {&u, &v}) detail::require_entries(*given, u_.size());
   end();
   tangent_.forget();
   body_.elastic->begin_step(seconds);
@@ -133,18 +133,18 @@ PALPATE_INLINE void ImplicitDynamics::set_state(const VectorX& u, const VectorX&
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_load(const VectorX& load) {
-  require_entries(load, u_.size());
+  detail::require_entries(load, u_.size());
   load_ = load;
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_springs(std::span<const ContactSpring> springs) noexcept {
   springs_changed_ = springs_changed_ || !springs_.empty() || !springs.empty();
   if (springs_.empty() != springs.empty()) factorised_ = false;  // springs that replace others are about as stiff
-  copy_springs(springs, springs_);
+  detail::copy_springs(springs, springs_);
 }
 
 PALPATE_INLINE void ImplicitDynamics::set_prescribed(const VectorX& values) {
-  require_entries(values, u_.size());
+  detail::require_entries(values, u_.size());
   body_.conditions.prescribed = values;
 }
 
@@ -168,7 +168,7 @@ PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& resi
   stored_ = body_.elastic->energy(trial_);
   scale_ = std::max({force_.norm(), full_.norm(), other_.norm(), load_.norm()});
   full_ = load_ - force_ - full_ - other_;
-  pushed_ = add_pushes(springs_, trial_, full_);
+  pushed_ = detail::add_pushes(springs_, trial_, full_);
   body_.conditions.gather(full_, residual);
   const double work = load_.dot(trial_);
   energy_scale_ = moving + std::abs(stored_) + std::abs(work) + pushed_;
@@ -217,10 +217,11 @@ PALPATE_INLINE void ImplicitDynamics::add_springs(const VectorX& u, BlockMatrix&
   }
 }
 
-PALPATE_INLINE DeformableBody ImplicitDynamics::checked(DeformableBody body, const DynamicsParameters& p) {
+PALPATE_INLINE detail::DeformableBody ImplicitDynamics::checked(detail::DeformableBody body,
+                                                                const DynamicsParameters& p) {
   p.newton.require_usable();
-  require_damping(p.mass_damping, p.stiffness_damping);
-  require_mass(body);
+  detail::require_damping(p.mass_damping, p.stiffness_damping);
+  detail::require_mass(body);
   return body;
 }
 
@@ -300,7 +301,7 @@ PALPATE_INLINE void ImplicitDynamics::apply_mass(const VectorX& x, VectorX& y) c
 }
 
 PALPATE_INLINE void ImplicitDynamics::add_mass(double factor, BlockMatrix& k) const noexcept {
-  const BlockPattern& pattern = k.pattern();
+  const detail::BlockPattern& pattern = k.pattern();
   if (parameters_.mass == MassKind::consistent)
     for (Index p = 0; p < static_cast<Index>(pattern.column.size()); ++p)
       k.block(p).diagonal().array() += factor * body_.mass[p];

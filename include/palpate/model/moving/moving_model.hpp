@@ -60,7 +60,7 @@ template <class E, class M, MotionPolicy Solver>
 class HapticFEModel<E, M, Solver> : public MovingTissue {
  public:
   static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Tet10");
-  static_assert(has_triangulated_faces<E>(),
+  static_assert(detail::has_triangulated_faces<E>(),
                 "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example NeoHookean");
   using ElementType = E;
@@ -81,12 +81,12 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
                 const SetupOptions& options = {}, const Parameters& parameters = {})
       : MovingTissue(options) {
     detail::require_step(parameters.step);
-    AdmittedMesh<E> admitted = admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
+    detail::AdmittedMesh<E> admitted = detail::admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
     const ScopedIdTranslation translation(admitted.ids);
     auto body = detail::make_any_body(std::move(admitted.mesh), materials);
-    auto rest = std::make_unique<ElementBody<E>>(detail::rest_body(body), admitted.origin);
+    auto rest = std::make_unique<detail::ElementBody<E>>(detail::rest_body(body), admitted.origin);
     rest->report_locking(setup_report());
-    Touchable touchable =
+    detail::Touchable touchable =
         admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
     if constexpr (
         requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
@@ -97,7 +97,7 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
     if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
     PreparedMotion prepared = Traits::make_motion(std::move(body), this->scene(), parameters, limits());
-    set_up(touchable, std::move(prepared), parameters.step, block_pattern(this->mesh()));
+    set_up(touchable, std::move(prepared), parameters.step, detail::block_pattern(this->mesh()));
   }
 
   /// The admitted mesh, in the frame of `origin()`.

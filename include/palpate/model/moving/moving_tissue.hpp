@@ -27,7 +27,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 struct BlockPattern;
+
+}  // namespace detail
 
 /// A body that moves at its own rate, in a background thread of a servo that solves the contact in every tick (the
 /// architecture of Duriez et al. 2006 and Courtecuisse et al. 2015). Base of HapticFEModel on Implicit<...> and
@@ -140,7 +144,7 @@ class MovingTissue : public ModelBase {
   void prepare_tools(const ToolRadii&, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   /// One servo at a time: its forces load the next step.
-  TissueClaim& claim() noexcept { return claim_; }
+  detail::TissueClaim& claim() noexcept { return claim_; }
 
  protected:
   explicit MovingTissue(const SetupOptions& options);
@@ -148,7 +152,8 @@ class MovingTissue : public ModelBase {
 
   /// The part of the set-up after the motion is prepared. Solves once per touchable dof. Throws not_converged and the
   /// errors of WarpedCompliance.
-  void set_up(const Touchable& touchable, PreparedMotion prepared, double step, const BlockPattern& pattern);
+  void set_up(const detail::Touchable& touchable, PreparedMotion prepared, double step,
+              const detail::BlockPattern& pattern);
 
   // For tissue whose body is cut
 
@@ -169,7 +174,7 @@ class MovingTissue : public ModelBase {
   virtual VectorX applied_load(const Scene& scene) const;
   /// Continues on another surface of the motion's body, which has changed; `mass` per node, `pattern` and `positions`
   /// of all its nodes. Loads become those of the scene on this body. From `prepare_step`. Allocates.
-  void change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
+  void change_surface(CutVertices surface, const VectorX& mass, const detail::BlockPattern& pattern,
                       const std::vector<Vector3>& positions);
   /// Rests at the start under the loads of the set-up; for its body.
   void rest_at_start();
@@ -205,11 +210,11 @@ class MovingTissue : public ModelBase {
   struct View {
     std::vector<Vector3> free, pressed;         // positions without and with the forces used_
     std::vector<Matrix3> rotation, half_space;  // how it turns and stretches the surface: SurfaceStretch
-    SecantTerms secants;
-    NearCompliance near;
+    detail::SecantTerms secants;
+    detail::NearCompliance near;
     ContactSurface surface;
     Status status;
-    VertexCompliance compliance;
+    detail::VertexCompliance compliance;
     mutable std::vector<std::uint64_t> requested;  // per vertex: the last surface for which it was requested
     std::vector<std::uint64_t> required;           // the same for those required
     std::uint64_t number = 0;                      // of the surface: changes before it
@@ -259,15 +264,15 @@ class MovingTissue : public ModelBase {
   double step_ = 0.0;
   std::unique_ptr<TissueMotion> motion_;
   bool accepts_initial_strains_ = false;
-  NodalRotations rotations_;
+  detail::NodalRotations rotations_;
   VectorX start_, start_load_, start_prescribed_;
   VectorX mass_;            // per node [kg]
   Scene loaded_;            // the last scene set; its gravity is not used
   VectorX applied_, load_;  // of that scene without and with gravity [N]
   VectorX full_;
   VectorX response_;  // of the last step to forces
-  VertexCompliance compliance_;
-  SecantCompliance secants_;
+  detail::VertexCompliance compliance_;
+  detail::SecantCompliance secants_;
   bool found_stiffness_ = false;               // a pair of the last step
   std::vector<NodeId> nodes_;                  // of every vertex
   std::vector<int> every_;                     // vertex
@@ -278,17 +283,17 @@ class MovingTissue : public ModelBase {
   bool was_slit_ = false;                      // since the last step
   detail::SplitVertices split_;                // of the last change of the surface
   Forces used_;
-  ForceAgreement agreement_;
-  ContactSprings springs_;      // of the newest forces; without them these are loads
-  bool has_springs_ = false;    // in the last step
-  bool takes_springs_ = false;  // whether the motion does
-  bool has_friction_ = false;   // of the servo's contacts
-  SurfaceStretch stretch_;
+  detail::ForceAgreement agreement_;
+  detail::ContactSprings springs_;  // of the newest forces; without them these are loads
+  bool has_springs_ = false;        // in the last step
+  bool takes_springs_ = false;      // whether the motion does
+  bool has_friction_ = false;       // of the servo's contacts
+  detail::SurfaceStretch stretch_;
   bool stretches_ = false;
   std::uint64_t steps_ = 0;
   std::mutex changes_;
   std::atomic<bool> slow_{false}, failed_work_{false};
-  TissueClaim claim_;
+  detail::TissueClaim claim_;
   TripleBuffer<View> views_;
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;

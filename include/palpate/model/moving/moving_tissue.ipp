@@ -37,10 +37,10 @@ PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBa
 }
 PALPATE_INLINE MovingTissue::~MovingTissue() = default;
 
-PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMotion prepared, double step,
-                                         const BlockPattern& pattern) {
+PALPATE_INLINE void MovingTissue::set_up(const detail::Touchable& touchable, PreparedMotion prepared, double step,
+                                         const detail::BlockPattern& pattern) {
   const ScopedIdTranslation translation(original_ids());
-  const StageTimer timer(setup_report(), "compliance");
+  const detail::StageTimer timer(setup_report(), "compliance");
   step_ = step;
   motion_ = std::move(prepared.motion);
   accepts_initial_strains_ = prepared.accepts_initial_strains;
@@ -53,22 +53,24 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   applied_ = load_of(loaded_, Vector3::Zero());
   load_ = start_load_ = load_of(scene(), gravity());
   full_ = response_ = start_load_;
-  rotations_ = NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
+  rotations_ = detail::NodalRotations(pattern, elastic_body().positions(), touchable.nodes);
   motion_->set_load(load_);
   motion_->rest_at(start_);
-  compliance_ = VertexCompliance(WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits()));
+  compliance_ =
+      detail::VertexCompliance(detail::WarpedCompliance(*motion_, step_, touchable.nodes, rotations_, limits()));
   motion_->rest_at(start_);  // the state that reset() restores
   nodes_ = touchable.nodes;
   for (const NodeId node : nodes_) rest_.push_back(elastic_body().positions()[static_cast<std::size_t>(node)]);
   list_every_vertex();
-  const double near_bytes = 3.0 * NearCompliance::bytes(nodes_.size(), most_near, most_pressed);  // one per view
+  const double near_bytes =
+      3.0 * detail::NearCompliance::bytes(nodes_.size(), most_near, most_pressed);  // one per view
   limits().require_memory(near_bytes, "the compliance near the contacts");
   triangles_ = touchable.triangles;
   if (motion_->is_quasi_static()) start_secants();
   takes_springs_ = motion_->set_springs({});
-  springs_ = ContactSprings(nodes_.size(), most_forces, most_points);
-  agreement_ = ForceAgreement(nodes_.size());
-  if (stretches_) stretch_ = SurfaceStretch(rest_, triangles_);
+  springs_ = detail::ContactSprings(nodes_.size(), most_forces, most_points);
+  agreement_ = detail::ForceAgreement(nodes_.size());
+  if (stretches_) stretch_ = detail::SurfaceStretch(rest_, triangles_);
   View view = make_view();
   view.near = {nodes_.size(), most_near, most_pressed};
   update_view(view);
@@ -85,7 +87,7 @@ PALPATE_INLINE void MovingTissue::set_up(const Touchable& touchable, PreparedMot
   setup_report().compliance_bytes = compliance_.bytes() + static_cast<std::size_t>(near_bytes);
   setup_report().free_dofs = conditions.free_count();
   setup_report().kept_dofs = 3 * setup_report().touchable_vertices;
-  if (accepts_initial_strains_) report_displacement(elastic_body().positions(), start_, setup_report());
+  if (accepts_initial_strains_) detail::report_displacement(elastic_body().positions(), start_, setup_report());
 }
 
 PALPATE_INLINE void MovingTissue::list_every_vertex() {
@@ -94,7 +96,7 @@ PALPATE_INLINE void MovingTissue::list_every_vertex() {
 }
 
 PALPATE_INLINE void MovingTissue::start_secants() {
-  secants_ = SecantCompliance(nodes_.size(), most_forces);
+  secants_ = detail::SecantCompliance(nodes_.size(), most_forces);
   moved_.resize(nodes_.size());
   find_moved(moved_);
   moved_before_ = moved_;
@@ -108,7 +110,7 @@ PALPATE_INLINE MovingTissue::View MovingTissue::make_view() const {
   view.rotation.resize(vertices);
   view.half_space.resize(vertices);
   if (motion_->is_quasi_static())
-    for (SecantTerms::Term& term : view.secants.term) term.resize(vertices);
+    for (detail::SecantTerms::Term& term : view.secants.term) term.resize(vertices);
   view.compliance = compliance_;
   view.requested.assign(vertices, ~std::uint64_t{0});
   view.required = view.requested;
@@ -171,7 +173,7 @@ PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
 PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
-  static_assert(ContactSprings::most_per_point * most_points <= most_springs);
+  static_assert(detail::ContactSprings::most_per_point * most_points <= detail::most_springs);
   springs_.clear();
   if (!takes_springs_) return;
   if (forces.points > 0 && forces.number == changed_.number) {
@@ -294,15 +296,16 @@ PALPATE_INLINE void MovingTissue::restart() {
   publish({});
 }
 
-PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass, const BlockPattern& pattern,
+PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const VectorX& mass,
+                                                 const detail::BlockPattern& pattern,
                                                  const std::vector<Vector3>& positions) {
   // Swapped, not assigned: a vector whose assignment finds no memory would be broken.
-  ForceAgreement agreement(surface.nodes.size());
+  detail::ForceAgreement agreement(surface.nodes.size());
   VectorX applied = applied_load(loaded_), load = applied;
   const Vector3 own = local(gravity(), pose());
   for (Index i = 0; i < mass.size(); ++i) add_node_vector(load, i, mass[i] * own);
   VectorX full = load, response = VectorX::Zero(load.size()), nodal_mass = mass;
-  NodalRotations rotations(pattern, positions, surface.nodes);
+  detail::NodalRotations rotations(pattern, positions, surface.nodes);
   applied_.swap(applied);
   load_.swap(load);
   full_.swap(full);
@@ -315,10 +318,10 @@ PALPATE_INLINE void MovingTissue::change_surface(CutVertices surface, const Vect
                                  [&](int v) { return mass_[Index{surface.nodes[vertex(v)]}]; });
   std::vector<Vector3> rest;
   for (const NodeId node : surface.nodes) rest.push_back(positions[static_cast<std::size_t>(node)]);
-  if (stretches_) stretch_ = SurfaceStretch(rest, surface.surface.triangles());
+  if (stretches_) stretch_ = detail::SurfaceStretch(rest, surface.surface.triangles());
   springs_.resize(surface.nodes.size());
   agreement_ = std::move(agreement);
-  compliance_ = VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
+  compliance_ = detail::VertexCompliance(compliance_, std::move(surface.similar), std::move(surface.side));
   nodes_ = std::move(surface.nodes);
   rest_.swap(rest);
   list_every_vertex();
@@ -340,7 +343,7 @@ PALPATE_INLINE SolveReport MovingTissue::displacement_with(std::span<const Verte
 }
 
 PALPATE_INLINE VectorX MovingTissue::displacement(std::span<const VertexForce> forces) {
-  require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
+  detail::require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
   VectorX u;
   displacement_with(forces, u);
   return u;
@@ -350,7 +353,7 @@ PALPATE_INLINE void MovingTissue::prepare_tools(const ToolRadii&, const ContactP
   const std::scoped_lock lock(changes_);
   has_friction_ = contact.friction > 0.0;
   take_surface();  // contact points are placed on it
-  views_.front().surface.set_loads(loads_in_words(gravity(), other_loads()));
+  views_.front().surface.set_loads(detail::loads_in_words(gravity(), other_loads()));
 }
 
 PALPATE_INLINE Status MovingTissue::require_columns(std::span<const int> vertices) noexcept {

@@ -50,18 +50,20 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
   static PreparedMotion make_motion(HyperelasticBody<E, M> body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
     detail::refuse_initial_strains(scene);
-    DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+    detail::DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
     if (p.large_strain_within != infinity) {
       p.require_divisible(ViscousMaterial<M>);
       const MeshRef mesh = mesh_ref(body.rest.mesh);
-      const std::vector<NodeId> touched = resolve_touchable(mesh, extract_boundary<E>(body.rest.mesh), scene).nodes;
-      if (BodyParts parts = divide_body(mesh, touched, p.large_strain_within); !parts.far.elements.empty())
+      const std::vector<NodeId> touched =
+          detail::resolve_touchable(mesh, extract_boundary<E>(body.rest.mesh), scene).nodes;
+      if (detail::BodyParts parts = detail::divide_body(mesh, touched, p.large_strain_within);
+          !parts.far.elements.empty())
         return make_partly_linear(body, std::move(made), std::move(parts), p, limits);
     }
     BlockMatrix stiffness = assemble_stiffness<E>(body.rest, limits);
-    auto factor = std::make_shared<RenewableFactor>(made, std::move(stiffness), std::vector<NodeId>{},
-                                                    stiffness_of_shape(body.rest, p), limits);
-    auto motion = std::make_unique<QuasiNewtonMotion>(
+    auto factor = std::make_shared<detail::RenewableFactor>(made, std::move(stiffness), std::vector<NodeId>{},
+                                                            stiffness_of_shape(body.rest, p), limits);
+    auto motion = std::make_unique<detail::QuasiNewtonMotion>(
         std::move(made), detail::make_energy_forces<S>(std::move(body), limits), std::move(factor), p);
     motion->begin();
     PreparedMotion prepared;
@@ -74,7 +76,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
  private:
   /// The stiffness of linear elasticity on the displaced mesh.
   template <Element E>
-  static StiffnessAt stiffness_of_shape(const Body<E>& rest, const Parameters& p) {
+  static detail::StiffnessAt stiffness_of_shape(const Body<E>& rest, const Parameters& p) {
     if (!p.renew_factor) return {};
     return [body = rest, rest = rest.mesh.positions](const VectorX& u, BlockMatrix& k) mutable {
       for (std::size_t i = 0; i < rest.size(); ++i)
@@ -86,24 +88,24 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
     };
   }
   template <Element E, LargeStrainMaterial M>
-  static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, DeformableBody made, BodyParts parts,
-                                           const Parameters& p, const SetupLimits& limits) {
-    require_mass(made);
-    std::unique_ptr<LinearSurroundings> surroundings;
+  static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, detail::DeformableBody made,
+                                           detail::BodyParts parts, const Parameters& p, const SetupLimits& limits) {
+    detail::require_mass(made);
+    std::unique_ptr<detail::LinearSurroundings> surroundings;
     {
       const OriginalIds ids = parts.far.original_ids();
       const ScopedIdTranslation translation(ids);
-      const Body<E> far = part_of(body.rest, parts.far);
-      surroundings = std::make_unique<LinearSurroundings>(assemble_stiffness<E>(far, limits),
-                                                          conditions_of(parts.far, made.conditions), far.mesh.positions,
-                                                          parts.interface_in(parts.far), limits);
+      const Body<E> far = detail::part_of(body.rest, parts.far);
+      surroundings = std::make_unique<detail::LinearSurroundings>(
+          assemble_stiffness<E>(far, limits), detail::conditions_of(parts.far, made.conditions), far.mesh.positions,
+          parts.interface_in(parts.far), limits);
     }
     const OriginalIds ids = parts.near.original_ids();
     const ScopedIdTranslation translation(ids);
-    HyperelasticBody<E, M> near = part_of(body, parts.near);
+    HyperelasticBody<E, M> near = detail::part_of(body, parts.near);
     const BlockMatrix stiffness = assemble_stiffness<E>(near.rest, limits);
-    const BlockPattern pattern = block_pattern(near.rest.mesh);
-    StiffnessAt stiffness_at = stiffness_of_shape(near.rest, p);
+    const detail::BlockPattern pattern = detail::block_pattern(near.rest.mesh);
+    detail::StiffnessAt stiffness_at = stiffness_of_shape(near.rest, p);
     return detail::prepare_partly_linear(std::move(made), std::move(parts), pattern, stiffness, std::move(stiffness_at),
                                          detail::make_energy_forces<S>(std::move(near), limits),
                                          std::move(surroundings), p, limits);

@@ -30,10 +30,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// first after the factors of M and K have changed, which factorises at rest. Stores two factors.
 class RenewedFactor {
  public:
-  RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
+  RenewedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
 
   template <class Tetrahedra>
-  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool again) noexcept {
+  void update(const Tetrahedra&, const detail::StepFactors& factors, const VectorX& u, bool again) noexcept {
     if (thread_.finished()) {
       if (spare().usable && spare().factors == factors) {
         front_ = 1 - front_;
@@ -59,15 +59,15 @@ class RenewedFactor {
     std::array<NodeId, 4> nodes;
     Eigen::Matrix<double, 4, 3> gradient;
     double volume;
-    LameConstants material;
+    detail::LameConstants material;
   };
   struct Made {
-    Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
-        : factor(std::make_unique<TangentSolver>(body.pattern, conditions, body.positions, limits)),
+    Made(const detail::DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
+        : factor(std::make_unique<detail::TangentSolver>(body.pattern, conditions, body.positions, limits)),
           rotation(body.positions.size(), Matrix3::Identity()) {}
-    std::unique_ptr<TangentSolver> factor;
+    std::unique_ptr<detail::TangentSolver> factor;
     std::vector<Matrix3> rotation;  // of the nodes in the state of the factor
-    StepFactors factors;
+    detail::StepFactors factors;
     bool usable = false;
   };
 
@@ -75,11 +75,11 @@ class RenewedFactor {
   Made& spare() noexcept { return made_[1 - front_]; }
 
   /// A at a state, and its factor.
-  void make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept;
+  void make(Made& made, const detail::StepFactors& factors, const VectorX& u) const noexcept;
   /// Stiffness of one element, as in CorotatedTetrahedra.
   static void add(const RotatingElement& e, double factor, const VectorX& u, BlockMatrix& a) noexcept;
 
-  mutable CorotatedSolve corotated_;
+  mutable detail::CorotatedSolve corotated_;
   VectorX lumped_;
   std::vector<RotatingElement> elements_;
   std::array<Made, 2> made_;
@@ -87,10 +87,11 @@ class RenewedFactor {
   VectorX asked_;  // used by the thread while it works
   VectorX rest_;   // no displacement
   long renewals_ = 0;
-  RenewalThread thread_;  // last: it uses all other members
+  detail::RenewalThread thread_;  // last: it uses all other members
 };
 
-inline RenewedFactor::RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+inline RenewedFactor::RenewedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest,
+                                    const SetupLimits& limits)
     : corotated_(body),
       lumped_(body.lumped),
       made_{{Made(body, corotated_.conditions(), limits), Made(body, corotated_.conditions(), limits)}},
@@ -98,13 +99,13 @@ inline RenewedFactor::RenewedFactor(const DeformableBody& body, const Body<Tet4>
       rest_(asked_),
       thread_([this] { make(spare(), spare().factors, asked_); }) {
   for (Index e = 0; e < rest.mesh.element_count(); ++e) {
-    const PointGeometry<Tet4> g = constant_geometry<Tet4>(rest.mesh, e);
+    const detail::PointGeometry<Tet4> g = detail::constant_geometry<Tet4>(rest.mesh, e);
     elements_.push_back({rest.mesh.elements[static_cast<std::size_t>(e)], g.gradient, g.volume,
-                         *lame_constants(rest.elasticity[rest.region_of(e)])});  // Corotational is isotropic
+                         *detail::lame_constants(rest.elasticity[rest.region_of(e)])});  // Corotational is isotropic
   }
 }
 
-inline void RenewedFactor::make(Made& made, const StepFactors& factors, const VectorX& u) const noexcept {
+inline void RenewedFactor::make(Made& made, const detail::StepFactors& factors, const VectorX& u) const noexcept {
   corotated_.fit(u, made.rotation);
   BlockMatrix& a = made.factor->matrix();
   a.set_zero();
@@ -123,14 +124,14 @@ inline void RenewedFactor::add(const RotatingElement& e, double factor, const Ve
   const Tensor3<double> t = tensor3<double>(f);
   const Eigen::Matrix<double, 4, 3> g = e.gradient * matrix3(closest_rotation(t)).transpose(),
                                     c = e.gradient * matrix3(cofactor(t)).transpose();
-  const LameConstants shear{0.0, e.material.mu}, volume{e.material.lambda, 0.0};
+  const detail::LameConstants shear{0.0, e.material.mu}, volume{e.material.lambda, 0.0};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) {
       const NodeId row = e.nodes[static_cast<std::size_t>(i)], column = e.nodes[static_cast<std::size_t>(j)];
       if (column > row) continue;
       Matrix3 block = Matrix3::Zero();
-      add_isotropic_block(shear, g.row(i), g.row(j), block.data());
-      add_isotropic_block(volume, c.row(i), c.row(j), block.data());
+      detail::add_isotropic_block(shear, g.row(i), g.row(j), block.data());
+      detail::add_isotropic_block(volume, c.row(i), c.row(j), block.data());
       a.block(a.pattern().find(row, column)) += factor * e.volume * block;
     }
 }

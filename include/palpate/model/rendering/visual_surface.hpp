@@ -148,7 +148,7 @@ class VisualSurface {
     const auto point = [&](NodeId i) { return static_cast<int>(std::ranges::lower_bound(nodes, i) - nodes.begin()); };
     for (const auto& face : model.boundary()) {
       if (!std::ranges::all_of(face.nodes, [&](NodeId i) { return std::ranges::binary_search(nodes, i); })) continue;
-      with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+      detail::with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
         for (const auto& t : F::triangles) {
           const auto at = [&](std::size_t k) { return point(face.nodes[static_cast<std::size_t>(t[k])]); };
           surface.triangles.push_back({at(0), at(1), at(2)});
@@ -160,7 +160,7 @@ class VisualSurface {
 
   void embed() {
     const Mesh<E>& mesh = model_->mesh();
-    const ElementSearch<E> inside(mesh);
+    const detail::ElementSearch<E> inside(mesh);
     const Boundary boundary(*model_);
     report_.element_size = boundary.mean_edge;
     for (const Vector3& p : surface_.positions) {
@@ -179,7 +179,7 @@ class VisualSurface {
   struct Boundary {
     explicit Boundary(const Model& model) {
       for (const auto& face : model.boundary()) {
-        with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
+        detail::with_face_element<E>(face.nodes.size(), [&]<TriangulatedFace F>() {
           const int first = static_cast<int>(corners.size());
           for (const NodeId i : face.nodes) corners.push_back(model.mesh().position(i));
           for (const auto& [a, b, c] : F::triangles) {
@@ -187,10 +187,10 @@ class VisualSurface {
             owner.push_back(face.element);
           }
         });
-        mean_edge += longest_edge<E>(element_nodes<E>(model.mesh(), face.element));
+        mean_edge += detail::longest_edge<E>(element_nodes<E>(model.mesh(), face.element));
       }
       mean_edge /= static_cast<double>(model.boundary().size());
-      bvh = Bvh(triangles, corners);
+      bvh = detail::Bvh(triangles, corners);
     }
 
     double squared_distance(const Vector3& p, int triangle) const {
@@ -199,7 +199,7 @@ class VisualSurface {
       const Vector3& a = corner(i);
       const Vector3& b = corner(j);
       const Vector3& c = corner(k);
-      const auto w = closest_point(p, a, b, c).weights;
+      const auto w = detail::closest_point(p, a, b, c).weights;
       return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm();
     }
 
@@ -212,13 +212,13 @@ class VisualSurface {
     std::vector<Triangle> triangles;
     std::vector<Index> owner;
     double mean_edge = 0.0;
-    Bvh bvh;
+    detail::Bvh bvh;
   };
 
   /// The point in the extrapolated coordinates of an element; the centre of the element where Newton's method fails.
-  ElementPoint beyond(Index element, const Vector3& p) const noexcept {
-    const auto xi = reference_coordinates<E>(element_nodes<E>(model_->mesh(), element), p);
-    return {element, xi.value_or(reference_centre<E>())};
+  detail::ElementPoint beyond(Index element, const Vector3& p) const noexcept {
+    const auto xi = detail::reference_coordinates<E>(element_nodes<E>(model_->mesh(), element), p);
+    return {element, xi.value_or(detail::reference_centre<E>())};
   }
 
   Vector3 displacement_at(std::size_t point) const noexcept {

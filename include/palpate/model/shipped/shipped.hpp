@@ -23,16 +23,16 @@
   PREFIX template class HapticFEModel<E, M, Condensed<SelectiveInverse>>;
 
 #define PALPATE_SHIPPED_MATERIAL_ON(PREFIX, E, M, GIVEN)                                                       \
-  PREFIX template AdmittedBody detail::admit_body<E, M, Mesh<GIVEN>>(                                          \
+  PREFIX template detail::AdmittedBody detail::admit_body<E, M, Mesh<GIVEN>>(                                  \
       const Mesh<GIVEN>&, const Scene&, const RegionMaterials<M>&, const AdmissionPolicy&, const SetupLimits&, \
       SetupReport&);                                                                                           \
   PALPATE_SHIPPED_CONSTRUCTORS(PREFIX, E, M, GIVEN, Condensed<SelectiveInverse>)
 
 /// All that is shipped for element E.
 #define PALPATE_SHIPPED_ELEMENT(PREFIX, E)                                                            \
-  PREFIX template class ElementBody<E>;                                                               \
-  PREFIX template class MatrixFreeStiffness<E>;                                                       \
-  PREFIX template void report_admission<E>(const Admitted<E>&, SetupReport&);                         \
+  PREFIX template class detail::ElementBody<E>;                                                       \
+  PREFIX template class detail::MatrixFreeStiffness<E>;                                               \
+  PREFIX template void detail::report_admission<E>(const Admitted<E>&, SetupReport&);                 \
   PREFIX template BlockMatrix assemble_stiffness<E>(const Body<E>&, const SetupLimits&);              \
   PALPATE_SHIPPED_MATERIAL(PREFIX, E, LinearElastic)                                                  \
   PALPATE_SHIPPED_MATERIAL(PREFIX, E, TransverselyIsotropic)                                          \

@@ -18,9 +18,17 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 class AnyStiffness;
+
+}  // namespace detail
 class Statics;
+namespace detail {
+
 struct SolverRecipe;
+
+}  // namespace detail
 
 /// The part of HapticFEModel that does not depend on element, material or solver. Scalar, float or double, is the type
 /// of the stored compliance. Base of the static HapticFEModel. Satisfies TissueModel.
@@ -65,7 +73,7 @@ class LinearTissue : public ModelBase, public StillTissue {
   double compliance_floor() const noexcept { return compliance_floor_; }
 
  protected:
-  using MakeStiffness = AnyStiffness (*)(const ElasticBody&, const SetupLimits&);
+  using MakeStiffness = detail::AnyStiffness (*)(const ElasticBody&, const SetupLimits&);
 
   explicit LinearTissue(const SetupOptions& options);
   LinearTissue(LinearTissue&&) noexcept;
@@ -73,15 +81,15 @@ class LinearTissue : public ModelBase, public StillTissue {
   ~LinearTissue();
 
   /// The part of the set-up after admission. Throws the errors of Statics and ContactCompliance.
-  void set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness, const SolverRecipe& recipe,
-              const SetupOptions& options);
+  void set_up(const Scene& scene, detail::AdmittedBody admitted, MakeStiffness make_stiffness,
+              const detail::SolverRecipe& recipe, const SetupOptions& options);
 
  private:
-  void prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options);
+  void prepare_contact(const detail::Touchable& touchable, bool eager, const SetupOptions& options);
   /// Measures the error of forces on the tool that the scene names. What makes it impossible is reported only.
   void measure_force_error(const ForceErrorOptions& options);
   /// Errors of the forces that do not come from the mesh.
-  LinearModelError model_error() const;
+  detail::LinearModelError model_error() const;
   /// Kept dof of every touchable dof, -1 when it is prescribed.
   std::vector<Index> kept_index() const;
   /// Computes a few columns to measure the compliance of the surface and the time per column; decides whether a
@@ -97,7 +105,7 @@ class LinearTissue : public ModelBase, public StillTissue {
   void move_surface() noexcept;
 
   std::unique_ptr<Statics> statics_;
-  ContactCompliance<Scalar> compliance_;
+  detail::ContactCompliance<Scalar> compliance_;
   double compliance_floor_ = 0.0;
   ContactSurface surface_;
   std::vector<Vector3> moved_;

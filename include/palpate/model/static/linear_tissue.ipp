@@ -49,7 +49,7 @@ SolveReport LinearTissue<Scalar>::displacement_with(std::span<const VertexForce>
 }
 template <std::floating_point Scalar>
 VectorX LinearTissue<Scalar>::displacement(std::span<const VertexForce> forces) {
-  require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
+  detail::require_vertex_forces(forces, static_cast<int>(touchable_nodes().size()));
   VectorX u(displacement().size());
   const SolveReport solved = displacement_with(forces, u);
   if (!solved.converged)
@@ -64,9 +64,9 @@ double LinearTissue<Scalar>::strain_energy() const {
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, MakeStiffness make_stiffness,
-                                  const SolverRecipe& recipe, const SetupOptions& options) {
-  const Touchable touchable = admit(scene, std::move(admitted));
+void LinearTissue<Scalar>::set_up(const Scene& scene, detail::AdmittedBody admitted, MakeStiffness make_stiffness,
+                                  const detail::SolverRecipe& recipe, const SetupOptions& options) {
+  const detail::Touchable touchable = admit(scene, std::move(admitted));
   const ScopedIdTranslation translation(original_ids());
   SetupReport& report = setup_report();
   elastic_body().report_locking(report);
@@ -81,7 +81,7 @@ void LinearTissue<Scalar>::set_up(const Scene& scene, AdmittedBody admitted, Mak
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options) {
-  const StageTimer timer(setup_report(), "accuracy");
+  const detail::StageTimer timer(setup_report(), "accuracy");
   limits().advance("accuracy", 0.0);
   const double radius = scene().touch_radius();
   std::shared_ptr<const ForceAccuracy> measured;
@@ -99,13 +99,13 @@ void LinearTissue<Scalar>::measure_force_error(const ForceErrorOptions& options)
 /// A solve loses the digits of the condition number, if that is known, and what the probe solve lost. The columns have
 /// their error relative to the largest displacement.
 template <std::floating_point Scalar>
-LinearModelError LinearTissue<Scalar>::model_error() const {
+detail::LinearModelError LinearTissue<Scalar>::model_error() const {
   constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
   constexpr double stored = std::same_as<Scalar, float> ? 0.5 * std::numeric_limits<float>::epsilon() : 0.0;
   double largest = 0.0;
   for (int v = 0; v < surface_.vertex_count(); ++v) largest = std::max(largest, compliance_.bound(v));
   const double lost = std::max(report().probe_error, unit_roundoff * report().condition_estimate);
-  LinearModelError error{std::sqrt(3.0) * stored * largest, lost * largest, 0.0, {}};
+  detail::LinearModelError error{std::sqrt(3.0) * stored * largest, lost * largest, 0.0, {}};
   Vector3 low = Vector3::Constant(infinity), high = -low;
   std::vector<Vector3> constrained;
   const auto& positions = elastic_body().positions();
@@ -132,7 +132,7 @@ template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
   const ScopedIdTranslation translation(original_ids());
   const Scene mapped = this->mapped(scene, surface_.triangles());
-  std::string others = mapped.loads_in_words(), loads = loads_in_words(scene.gravity(), others);
+  std::string others = mapped.loads_in_words(), loads = detail::loads_in_words(scene.gravity(), others);
   SetupReport changed = report();
   statics_->set_conditions(mapped, local(scene.gravity(), pose()), reporting_to(changed));
   keep_loads(scene.gravity(), others);
@@ -143,7 +143,7 @@ void LinearTissue<Scalar>::set_conditions(const Scene& scene) {
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::set_gravity(const Vector3& gravity) {
   require_finite_gravity(gravity);
-  std::string loads = loads_in_words(gravity, other_loads());
+  std::string loads = detail::loads_in_words(gravity, other_loads());
   SetupReport changed = report();
   statics_->set_gravity(local(gravity, pose()), reporting_to(changed));
   keep_gravity(gravity);
@@ -162,7 +162,7 @@ void LinearTissue<Scalar>::set_pose(const Eigen::Isometry3d& pose) {
 
 template <std::floating_point Scalar>
 void LinearTissue<Scalar>::reset() {
-  std::string others = scene().loads_in_words(), loads = loads_in_words(scene().gravity(), others);
+  std::string others = scene().loads_in_words(), loads = detail::loads_in_words(scene().gravity(), others);
   SetupReport changed = report();
   statics_->set_conditions(scene(), scene().gravity(), reporting_to(changed));
   place(Eigen::Isometry3d::Identity());
@@ -172,11 +172,12 @@ void LinearTissue<Scalar>::reset() {
 }
 
 template <std::floating_point Scalar>
-void LinearTissue<Scalar>::prepare_contact(const Touchable& touchable, bool eager, const SetupOptions& options) {
-  const StageTimer timer(setup_report(), "compliance");
+void LinearTissue<Scalar>::prepare_contact(const detail::Touchable& touchable, bool eager,
+                                           const SetupOptions& options) {
+  const detail::StageTimer timer(setup_report(), "compliance");
   const int vertices = static_cast<int>(touchable_nodes().size());
-  compliance_ = ContactCompliance<Scalar>(statics_->system(), kept_index(), eager ? vertices : options.compliance_slots,
-                                          limits());
+  compliance_ = detail::ContactCompliance<Scalar>(statics_->system(), kept_index(),
+                                                  eager ? vertices : options.compliance_slots, limits());
   if (eager)
     for (int v = 0; v < vertices; ++v) {
       if (v % 64 == 0) limits().advance("compliance", static_cast<double>(v) / static_cast<double>(vertices));
@@ -232,7 +233,7 @@ void LinearTissue<Scalar>::sample_columns(ColumnFill fill) {
 template <std::floating_point Scalar>
 bool LinearTissue<Scalar>::is_column_late() const {
   constexpr double most_numbers = 1e5;  // a core reads about two numbers of a factor per nanosecond
-  AnyStaticSystem system = statics_->system();
+  detail::AnyStaticSystem system = statics_->system();
   if (system.kept() == 0) return false;
   VectorX column(system.kept());
   const int iterations = system.compliance_column(0, column).iterations;
@@ -248,7 +249,7 @@ Vector3 LinearTissue<Scalar>::deformed(NodeId node) const noexcept {
 
 template <std::floating_point Scalar>
 std::function<void(const VectorX&)> LinearTissue<Scalar>::reporting_to(SetupReport& report) const {
-  return [this, &report](const VectorX& u) { report_displacement(elastic_body().positions(), u, report); };
+  return [this, &report](const VectorX& u) { detail::report_displacement(elastic_body().positions(), u, report); };
 }
 
 template <std::floating_point Scalar>

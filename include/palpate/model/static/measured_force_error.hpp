@@ -20,7 +20,7 @@ inline ForceErrorOptions measured_force_error(int places) {
   if (places < 1)
     raise(SetupErrorKind::bad_argument, "the force error is to be measured at " + std::to_string(places) + " places",
           "Give one or more; three are typical");
-  return {places, &measure_force_error, nullptr};
+  return {places, &detail::measure_force_error, nullptr};
 }
 
 }}  // namespace palpate

@@ -191,24 +191,24 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
                                        const SetupLimits& limits = {}) {
   constexpr double tolerance = 1e-9;  // of theta; the error of a frequency is of the order of its square
   detail::require_density(body);
-  const EssentialConditions conditions = resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
-  const MatrixX rigid_motions = rigid_displacements(body.mesh, conditions.constrained);
+  const EssentialConditions conditions = detail::resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
+  const MatrixX rigid_motions = detail::rigid_displacements(body.mesh, conditions.constrained);
   detail::require_count(count, conditions.free_count() - rigid_motions.cols());
-  limits.require_memory(BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
+  limits.require_memory(detail::BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
 
-  detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
-                               free_matrix(assemble_mass<E>(body, limits), conditions),
+  detail::ModalProblem problem{detail::free_matrix(assemble_stiffness<E>(body, limits), conditions),
+                               detail::free_matrix(assemble_mass<E>(body, limits), conditions),
                                rigid_motions(conditions.free_dofs, Eigen::all)};
   const bool constrained = problem.rigid.cols() == 0;
   double shift = constrained ? 0.0 : -1e-2 * detail::uniform_strain_quotient(body, conditions, problem);
-  LanczosPairs pairs;
+  detail::LanczosPairs pairs;
   VectorX lambda;
   for (int attempt = 0; attempt < (constrained ? 1 : 4) && !pairs.converged; ++attempt) {
     if (attempt > 0)
       shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: restart with this shift
     const SparseCholesky factor(
-        constrained ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass), limits);
-    BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
+        constrained ? problem.stiffness : detail::SparseMatrix(problem.stiffness - shift * problem.mass), limits);
+    detail::BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
     pairs = lanczos.run(tolerance, constrained ? 200 : 40, limits);
     lambda = problem.rayleigh(pairs.vectors);
   }

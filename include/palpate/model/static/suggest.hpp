@@ -17,7 +17,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// The advice of `suggest`.
 struct Suggestion {
-  std::vector<SuggestedModel> candidates;
+  std::vector<detail::SuggestedModel> candidates;
   std::optional<std::size_t> chosen;  ///< empty: none is within the tick and the set-up of the budget
   bool within_error = false;          ///< whether the chosen one has the wanted error
   std::string reason;                 ///< one sentence
@@ -40,9 +40,9 @@ struct Suggestion {
 /// Valid for tools that press; what lifts or pulls a part needs large strain (docs/choosing.md). Throws bad_argument
 /// for a budget out of range, or a scene without the radius of the tool (TouchOptions); the errors of a set-up.
 Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials,
-                   const SuggestBudget& budget = {});
+                   const detail::SuggestBudget& budget = {});
 Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene, const LinearElastic& material,
-                   const SuggestBudget& budget = {});
+                   const detail::SuggestBudget& budget = {});
 
 }}  // namespace palpate
 

@@ -79,16 +79,16 @@ inline std::string reason_for(const Suggestion& s, const SuggestBudget& budget) 
                               " within the budget; most accurate is " + what;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE std::string SuggestedModel::name() const {
-  return element + (edge > 0.0 ? " on the mesh refined to edges of " + detail::rounded(1e3 * edge, "mm")
-                               : " on the mesh as given");
+  return element +
+         (edge > 0.0 ? " on the mesh refined to edges of " + rounded(1e3 * edge, "mm") : " on the mesh as given");
 }
+
+}  // namespace detail
 
 PALPATE_INLINE std::string Suggestion::code() const {
   if (!chosen) return "// " + reason + "\n";
-  const SuggestedModel& m = candidates[*chosen];
+  const detail::SuggestedModel& m = candidates[*chosen];
   std::string mesh = m.edge > 0.0 ? "refine_near_touched(mesh, scene, " + number(m.edge) + ")" : "mesh";
   if (m.element == "Tet10") mesh = "promote<Tet10>(" + mesh + ")";
   return "// " + reason + "\nusing Model = HapticFEModel<" + m.element +
@@ -98,10 +98,11 @@ PALPATE_INLINE std::string Suggestion::code() const {
 }
 
 PALPATE_INLINE Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene,
-                                  const RegionMaterials<LinearElastic>& materials, const SuggestBudget& budget) {
-  CandidateMaker maker(mesh, scene, materials, budget);
+                                  const RegionMaterials<LinearElastic>& materials,
+                                  const detail::SuggestBudget& budget) {
+  detail::CandidateMaker maker(mesh, scene, materials, budget);
   Suggestion s;
-  s.lists_nodes = lists_nodes(scene);
+  s.lists_nodes = detail::lists_nodes(scene);
   s.candidates = maker.make_all();
   detail::choose(s, budget);
   s.reason = detail::reason_for(s, budget);
@@ -110,7 +111,7 @@ PALPATE_INLINE Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene,
 }
 
 PALPATE_INLINE Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene, const LinearElastic& material,
-                                  const SuggestBudget& budget) {
+                                  const detail::SuggestBudget& budget) {
   return suggest(mesh, scene, RegionMaterials<LinearElastic>{{everywhere, material}}, budget);
 }
 

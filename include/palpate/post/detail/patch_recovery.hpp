@@ -20,6 +20,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// Coordinates that map a patch of elements of any aspect ratio to about a unit sphere around its centre.
 struct PatchFrame {
   Vector3 centre = Vector3::Zero();
@@ -60,6 +62,8 @@ class PatchPolynomial {
   bool complete_ = false;
 };
 
+}  // namespace detail
+
 /// Stress at the nodes [Pa], one column per node and adjacent region: the stress jumps between two materials, so a node
 /// on an interface has two columns.
 struct NodalStress {
@@ -73,6 +77,8 @@ struct NodalStress {
   /// elements.
   Vector6 at(Index node) const noexcept;
 };
+
+namespace detail {
 
 /// Sampling points of patch recovery in an element, and the required number of points per unknown. Hexahedra: the
 /// centre of Hex8 and eight points of Hex20, where the stress is more accurate than elsewhere (Barlow 1976), ten times
@@ -93,8 +99,6 @@ requires(E::faces.size() == 6 && E::order <= 2) struct SamplingRule<E> {
   using Type = HexahedronRule<E::order>;
   static constexpr int oversampling = 2;
 };
-
-namespace detail {
 
 /// Patches around the corner nodes of one mesh, and the stress samples in their elements.
 template <Element E>
@@ -270,7 +274,7 @@ class PatchRecovery {
 /// allocates: for evaluating results, not for every frame. Throws bad_argument when `u` has a wrong length.
 template <Element E>
 NodalStress patch_recovery(const Body<E>& body, const VectorX& u) {
-  require_displacement(body.mesh, u);
+  detail::require_displacement(body.mesh, u);
   return detail::PatchRecovery<E>(body, u).recover();
 }
 

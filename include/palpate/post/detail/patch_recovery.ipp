@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE Vector3 PatchFrame::operator()(const Vector3& x) const noexcept {
   return map * (x - centre);
@@ -75,4 +75,4 @@ PALPATE_INLINE PatchPolynomial::Terms PatchPolynomial::powers(const Vector3& x) 
   return p;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

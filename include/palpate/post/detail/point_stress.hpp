@@ -28,8 +28,10 @@ using StressColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 template <Element E>
 Vector6 point_stress(const ElementNodes<E>& x, const ElementNodes<E>& u, const Vector3& xi, const Matrix6& d,
                      const Vector6& strain0 = Vector6::Zero()) noexcept {
-  return d * (strain_at<E>(integration_point<E>(x, xi, 1.0), u) - strain0);
+  return d * (detail::strain_at<E>(detail::integration_point<E>(x, xi, 1.0), u) - strain0);
 }
+
+namespace detail {
 
 /// The mean of an element's stress over its volume.
 struct MeanStress {
@@ -132,5 +134,7 @@ class ElementStress {
   const VectorX& u_;
   [[no_unique_address]] std::conditional_t<HasSmoothedStrain<E>, SmoothedState, Nothing> smoothed_;
 };
+
+}  // namespace detail
 
 }}  // namespace palpate

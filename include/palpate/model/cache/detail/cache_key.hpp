@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Hashes of all inputs that determine the numbers in a cache file, one per part, so that a mismatch can be named. All
 /// values of the stiffness matrix are hashed too, which detects differences that the parts miss (changed code of an
@@ -36,8 +36,6 @@ struct CacheKey {
   void set_policy(std::string_view name) noexcept;
   std::string_view policy_name() const noexcept;
 };
-
-namespace detail {
 
 template <class Matrix>
 void add_entries(ContentHash& hash, const Matrix& m) noexcept {
@@ -69,16 +67,14 @@ std::uint64_t hash_of_mesh(const Mesh<E>& mesh) noexcept {
   return hash.digest();
 }
 
-}  // namespace detail
-
 /// The part of a key that depends on the body only. Cost: one pass over the mesh.
 template <Element E>
 CacheKey body_key(const Body<E>& body) noexcept {
   CacheKey key;
-  key.element = detail::hash_of_element<E>();
-  key.mesh = detail::hash_of_mesh(body.mesh);
+  key.element = hash_of_element<E>();
+  key.mesh = hash_of_mesh(body.mesh);
   ContentHash material;
-  for (const Matrix6& d : body.elasticity) detail::add_entries(material, d);
+  for (const Matrix6& d : body.elasticity) add_entries(material, d);
   material.add(std::span<const std::int32_t>(body.materials));
   key.material = material.digest();
   return key;
@@ -92,7 +88,7 @@ CacheKey cache_key(CacheKey of_body, const EssentialConditions& conditions, cons
 /// Compares the key in a file with the current one. Returns the first part that differs; `why` lists all of them.
 CacheMismatch compare(const CacheKey& file, const CacheKey& here, std::string& why);
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/cache/detail/cache_key.ipp>

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void CacheKey::set_policy(std::string_view name) noexcept {
   policy.fill('\0');
@@ -16,7 +16,7 @@ PALPATE_INLINE std::string_view CacheKey::policy_name() const noexcept {
   return {policy.data(), static_cast<std::size_t>(std::ranges::find(policy, '\0') - policy.begin())};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -37,7 +37,7 @@ inline std::uint64_t hash_of_stiffness(const BlockMatrix& k) noexcept {
 
 }}}  // namespace palpate::detail
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE CacheKey cache_key(CacheKey of_body, const EssentialConditions& conditions,
                                   const std::vector<NodeId>& kept, const BlockMatrix& stiffness,
@@ -45,9 +45,9 @@ PALPATE_INLINE CacheKey cache_key(CacheKey of_body, const EssentialConditions& c
   CacheKey key = of_body;
   key.set_policy(policy);
   key.scalar_bytes = scalar_bytes;
-  key.conditions = detail::hash_of(conditions.constrained);
-  key.touched = detail::hash_of(kept);
-  key.stiffness = detail::hash_of_stiffness(stiffness);
+  key.conditions = hash_of(conditions.constrained);
+  key.touched = hash_of(kept);
+  key.stiffness = hash_of_stiffness(stiffness);
   return key;
 }
 
@@ -75,4 +75,4 @@ PALPATE_INLINE CacheMismatch compare(const CacheKey& file, const CacheKey& here,
   return first;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -22,7 +22,7 @@
 #include <system_error>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The first bytes of a cache file, in the byte order of the machine that wrote it; no padding. The numbers follow and,
 /// as the last eight bytes, their ContentHash.
@@ -101,7 +101,7 @@ class PreparedCache {
 
   CacheKey key_;
   CacheReport* report_;
-  detail::File file_;
+  File file_;
   std::optional<BinaryReader> reader_;
 };
 
@@ -116,7 +116,7 @@ inline bool PreparedCache::open() {
   if (!fs::is_regular_file(status)) return reject(CacheMismatch::foreign, "it is not a regular file");
   errno = 0;
   file_.reset(std::fopen(report_->file.c_str(), "rb"));
-  if (!file_) return reject(CacheMismatch::unreadable, "it cannot be read: " + detail::system_message(errno));
+  if (!file_) return reject(CacheMismatch::unreadable, "it cannot be read: " + system_message(errno));
   CacheHeader header;
   std::string why;
   CacheMismatch mismatch = read_cache_header(file_.get(), header, why);
@@ -158,14 +158,14 @@ inline void PreparedCache::store(const std::function<void(BinaryWriter&)>& write
   CacheHeader header{.key = key_};
   header.hash = header.right_hash();
   errno = 0;
-  if (std::fwrite(&header, sizeof header, 1, file.stream()) != 1) return fail(detail::system_message(errno));
+  if (std::fwrite(&header, sizeof header, 1, file.stream()) != 1) return fail(system_message(errno));
   BinaryWriter out(file.stream());
   write(out);
   out.value(out.digest());
-  if (!out.good()) return fail(detail::system_message(out.error()));
+  if (!out.good()) return fail(system_message(out.error()));
   if (!file.commit()) return fail(file.error());
   report_->written = true;
   report_->bytes = sizeof header + static_cast<std::size_t>(out.written());
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

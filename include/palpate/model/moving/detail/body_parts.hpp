@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Some elements of a mesh and their nodes, both ascending.
 struct BodyPart {
@@ -65,7 +65,7 @@ HyperelasticBody<E, M> part_of(const HyperelasticBody<E, M>& whole, const BodyPa
   return {part_of(whole.rest, part), whole.materials};
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/moving/detail/body_parts.ipp>

@@ -9,9 +9,7 @@
 #include <queue>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-namespace detail {
-
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Distance of every node from the nearest of `nodes`, along edges and diagonals of elements; infinite beyond `limit`.
 PALPATE_INLINE std::vector<double> node_distances(const MeshRef& mesh, std::span<const NodeId> nodes, double limit) {
   using Reached = std::pair<double, NodeId>;
@@ -39,8 +37,6 @@ PALPATE_INLINE std::vector<double> node_distances(const MeshRef& mesh, std::span
   return distance;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE void BodyPart::gather(const VectorX& whole, VectorX& part) const noexcept {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     set_node_vector(part, static_cast<Index>(i), node_vector(whole, Index{nodes[i]}));
@@ -67,7 +63,7 @@ PALPATE_INLINE std::vector<NodeId> BodyParts::interface_in(const BodyPart& part)
 }
 
 PALPATE_INLINE BodyParts divide_body(const MeshRef& mesh, std::span<const NodeId> nodes, double distance) {
-  const std::vector<double> reached = detail::node_distances(mesh, nodes, distance);
+  const std::vector<double> reached = node_distances(mesh, nodes, distance);
   enum : std::uint8_t { in_near = 1, in_far = 2, in_both = 3 };
   std::vector<std::uint8_t> parts(reached.size(), 0);
   const auto any = [&](Index e, auto&& holds) {
@@ -110,4 +106,4 @@ PALPATE_INLINE EssentialConditions conditions_of(const BodyPart& part, const Ess
   return made;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Springs between the tools, where a tick has left them, and the points that they press. A spring has the force of the
 /// tick where the point is displaced as in the tick, and follows the point's displacement from there. A step with them
@@ -95,7 +95,7 @@ class ContactSprings {
   std::vector<Vector3> sum_, unit_, moved_, yield_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/moving/detail/contact_springs.ipp>

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE ContactSprings::ContactSprings(std::size_t vertices, std::size_t most_forces, std::size_t most_points)
     : slot_(vertices, -1), sum_(most_forces), unit_(most_forces), moved_(most_forces), yield_(most_forces) {
@@ -95,4 +95,4 @@ PALPATE_INLINE void ContactSprings::push(std::size_t i, double force, std::span<
           ModelVector(spring.weights[a] * force * spring.direction);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Options of a CorotatedMotion.
 struct CorotatedMotionOptions {
@@ -232,8 +232,8 @@ class CorotatedMotion {
     return s.old_in_u == 0.0 && s.new_in_u == 1.0 && s.old_in_v == 0.0 && s.new_in_v == 1.0;
   }
   static DeformableBody checked(const Body<Tet4>& rest, const Scene& scene, const SetupLimits& limits) {
-    detail::refuse_initial_strains(scene);
-    DeformableBody body = detail::body_with_mass(rest, scene, limits);
+    refuse_initial_strains(scene);
+    DeformableBody body = body_with_mass(rest, scene, limits);
     require_mass(body);
     return body;
   }
@@ -353,4 +353,4 @@ class CorotatedMotion {
   double time_ = 0.0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

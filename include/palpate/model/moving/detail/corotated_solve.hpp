@@ -13,7 +13,7 @@
 #include <numeric>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// z = R A^-1 R^T r with a factor of A and a rotation R per node. Exact for a rigid rotation, accurate where neighbours
 /// have similar rotations. O(nodes) in addition to the solve; only the constructor allocates.
@@ -101,4 +101,4 @@ inline void CorotatedSolve::apply(const BlockMatrix& a, const VectorX& x, Vector
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Whether ticks and steps find the same contact forces, all tools together. A tick that takes the tissue for stiffer
 /// than it is finds too large a change of force, and the next step reverses it: forces alternate. The springs between
@@ -92,4 +92,4 @@ inline void ForceAgreement::compare(double difference, double all, bool has_fric
   std::ranges::copy(force_, differed_.begin());
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

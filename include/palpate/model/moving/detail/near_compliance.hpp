@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// C_ij for the vertices i near the tools and the vertices j that carry contacts. The stepping thread evaluates it when
 /// it publishes a surface, so that a tick reads 72 bytes where it would rotate and correct a block of a large table.
@@ -107,4 +107,4 @@ class NearCompliance {
   std::vector<Matrix3> block_;  // row i at i * columns_.most: a tick sums over the columns
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A linear body at rest under its loads, as a stiffness and forces on its interface: exact static condensation.
 /// Vectors have 3 entries per node of the part. Only the constructor allocates or throws.
@@ -188,8 +188,6 @@ class PartlyLinearMotion final : public TissueMotion {
   bool stepped_ = false, far_changed_ = true;
 };
 
-namespace detail {
-
 /// The motion of a body whose near part has these forces, stiffness at rest and after displacement, and pattern.
 /// `whole` has the conditions, loads and masses of all nodes. Throws as QuasiNewtonMotion.
 PreparedMotion prepare_partly_linear(DeformableBody whole, BodyParts parts, const BlockPattern& near_pattern,
@@ -198,9 +196,7 @@ PreparedMotion prepare_partly_linear(DeformableBody whole, BodyParts parts, cons
                                      std::unique_ptr<LinearSurroundings> surroundings,
                                      const QuasiNewtonParameters& parameters, const SetupLimits& limits);
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/moving/detail/partly_linear_motion.ipp>

@@ -15,7 +15,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE LinearSurroundings::LinearSurroundings(BlockMatrix stiffness, EssentialConditions conditions,
                                                       const std::vector<Vector3>& positions,
@@ -33,9 +33,9 @@ PALPATE_INLINE LinearSurroundings::LinearSurroundings(BlockMatrix stiffness, Ess
   interior_ = std::move(schur.interior);
   schur_ = std::move(schur.stiffness);
   extension_ = interior_;
-  load_ = full_ = detail::zeros(conditions_.dof_count());
-  free_ = extended_ = detail::zeros(conditions_.free_count());
-  zeros_ = detail::zeros(schur_.rows());
+  load_ = full_ = zeros(conditions_.dof_count());
+  free_ = extended_ = zeros(conditions_.free_count());
+  zeros_ = zeros(schur_.rows());
   from_load_ = from_prescribed_ = {full_, zeros_};
   const VectorX values = std::exchange(conditions_.prescribed, full_);
   set_prescribed(values);
@@ -82,8 +82,6 @@ PALPATE_INLINE void LinearSurroundings::extend(const VectorX& kept, VectorX& u) 
   conditions_.scatter(extended_, u);
 }
 
-namespace detail {
-
 /// y = A x; reads the lower half of A, which is symmetric and stored by columns.
 PALPATE_INLINE void symmetric_product(const MatrixX& a, const VectorX& x, VectorX& y) noexcept {
   const Index size = x.size();
@@ -95,13 +93,11 @@ PALPATE_INLINE void symmetric_product(const MatrixX& a, const VectorX& x, Vector
   }
 }
 
-}  // namespace detail
-
 PALPATE_INLINE double SurroundedForces::evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept {
   const double stored = part_->evaluate(u, f, report);
   const Index count = stiffness_.rows();
   for (Index i = 0; i < count; ++i) moved_[i] = u[kept_[static_cast<std::size_t>(i)]];
-  detail::symmetric_product(stiffness_, moved_, pulled_);
+  symmetric_product(stiffness_, moved_, pulled_);
   for (Index i = 0; i < count; ++i) f[kept_[static_cast<std::size_t>(i)]] += pulled_[i];
   return stored + 0.5 * moved_.dot(pulled_);
 }
@@ -210,12 +206,12 @@ PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::uniq
       near_(std::move(near)),
       kept_(dofs_in(parts_.near, parts_.far, surroundings_->kept())),
       far_displacement_(parts_, positions, *surroundings_, largest_linear_displacement * extent(positions)),
-      u_(detail::zeros(load.size())),
+      u_(zeros(load.size())),
       v_(u_),
       load_(load),
-      near_vector_(detail::zeros(near_->displacement().size())),
-      far_vector_(detail::zeros(3 * static_cast<Index>(parts_.far.nodes.size()))),
-      kept_moved_(detail::zeros(static_cast<Index>(kept_.size()))),
+      near_vector_(zeros(near_->displacement().size())),
+      far_vector_(zeros(3 * static_cast<Index>(parts_.far.nodes.size()))),
+      kept_moved_(zeros(static_cast<Index>(kept_.size()))),
       extended_(far_vector_) {
   for (const Index dof : kept_)
     kept_in_body_.push_back(3 * Index{parts_.near.nodes[static_cast<std::size_t>(dof / 3)]} + dof % 3);
@@ -262,7 +258,7 @@ PALPATE_INLINE void PartlyLinearMotion::complete(VectorX& u) noexcept {
 PALPATE_INLINE bool PartlyLinearMotion::respond(const VectorX& forces, VectorX& u) noexcept {
   parts_.near.gather(forces, near_vector_);
   if (!near_->respond(near_vector_, near_vector_)) return false;
-  detail::fill(u, 0.0);
+  fill(u, 0.0);
   parts_.near.scatter(near_vector_, u);
   return true;
 }
@@ -301,8 +297,6 @@ PALPATE_INLINE void PartlyLinearMotion::load_near() noexcept {
     near_vector_[kept_[i]] += surroundings_->kept_load(static_cast<Index>(i));
   near_->set_load(near_vector_);
 }
-
-namespace detail {
 
 PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyParts parts,
                                                     const BlockPattern& near_pattern, const BlockMatrix& near_stiffness,
@@ -353,6 +347,4 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
   return prepared;
 }
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

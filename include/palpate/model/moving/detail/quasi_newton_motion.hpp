@@ -42,6 +42,8 @@ struct QuasiNewtonParameters {
   void require_divisible(bool viscous) const;
 };
 
+namespace detail {
+
 /// Integrates M a + alpha M v + f(u) = load by implicit Euler, or without inertia f(u) = load. Every step minimises its
 /// incremental potential (Ortiz and Stainier 1999) by L-BFGS, with the factor of M/h^2 + K, rotated with the nodes, as
 /// initial inverse (Liu, Bouaziz and Kavan 2017). K is the stiffness at rest. It must be that of the same elements: one
@@ -168,6 +170,8 @@ class QuasiNewtonMotion final : public TissueMotion {
   bool stretched_ = false;  // how the factor follows the body; changes when a step ends far from its solution
   bool shorten_ = false;    // the next step
 };
+
+}  // namespace detail
 
 }}  // namespace palpate
 

@@ -20,7 +20,7 @@ PALPATE_INLINE void QuasiNewtonParameters::require_usable() const {
   };
   if (maximum_iterations < 1) refuse("maximum_iterations", std::to_string(maximum_iterations), "Give at least 1");
   if (!(tolerance > 0.0 && tolerance < 1.0)) refuse("tolerance", number(tolerance), "Give a small number above 0");
-  require_damping(mass_damping, 0.0);
+  detail::require_damping(mass_damping, 0.0);
 }
 
 PALPATE_INLINE void QuasiNewtonParameters::require_divisible(bool viscous) const {
@@ -33,6 +33,8 @@ PALPATE_INLINE void QuasiNewtonParameters::require_divisible(bool viscous) const
         std::string("large_strain_within for tissue with ") + (inertia ? "inertia" : "viscoelasticity"),
         inertia ? "Set inertia = false, or leave large_strain_within infinite" : "Leave large_strain_within infinite");
 }
+
+namespace detail {
 
 PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::unique_ptr<EnergyForces> forces,
                                                     std::shared_ptr<StepFactor> factor,
@@ -453,5 +455,7 @@ PALPATE_INLINE void QuasiNewtonMotion::accept() noexcept {
   known_.deformation = deformation_;
   known_.valid = true;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Sets a matrix to the stiffness of a body at a displacement, approximately. Returns false where it has none: inverted
 /// elements. Allocates.
@@ -79,7 +79,7 @@ class RenewableFactor final : public StepFactor {
   std::optional<RenewalThread> thread_;  // last: it uses all other members
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/moving/detail/renewable_factor.ipp>

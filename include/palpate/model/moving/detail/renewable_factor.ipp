@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE RenewableFactor::RenewableFactor(const DeformableBody& body, BlockMatrix stiffness,
                                                 const std::vector<NodeId>& last, StiffnessAt stiffness_at,
@@ -99,8 +99,8 @@ PALPATE_INLINE void RenewableFactor::renew() noexcept {
 
 PALPATE_INLINE bool RenewableFactor::find_stiffness(BlockMatrix& k) noexcept {
   bool found = false;
-  detail::attempt([&] { found = stiffness_at_(asked_, k); });  // not without memory
+  attempt([&] { found = stiffness_at_(asked_, k); });  // not without memory
   return found;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

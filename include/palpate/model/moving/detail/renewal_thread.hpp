@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Runs `work` in a thread, once for every `ask`. The asking thread prepares its input before `ask`, uses its result
 /// after `finished`, then calls `take`, and never waits. The destructor waits for the present work.
@@ -65,4 +65,4 @@ inline void RenewalThread::run() noexcept {
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Corrections of a compliance by pairs of a change of forces y and the change of displacement s that it caused, such
 /// that the corrected compliance maps y to s: inverse BFGS updates C' = C + a s^T - s w^T with w = C y / (s.y) and a =
@@ -83,7 +83,7 @@ class SecantCompliance {
   std::size_t count_ = 0;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/moving/detail/secant_compliance.ipp>

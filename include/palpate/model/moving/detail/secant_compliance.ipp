@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE double SecantTerms::bound(std::size_t j) const noexcept {
   double largest = 0.0;
@@ -101,4 +101,4 @@ PALPATE_INLINE void SecantCompliance::find_terms(const VertexCompliance& complia
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -4,7 +4,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// An approximate inverse of K + m M, symmetric and positive definite, for a stiffness K and a mass M. Vectors have 3
 /// entries per node. Used by one thread; neither allocates nor throws.
@@ -36,4 +36,4 @@ class StepFactor {
   virtual long renewals() const noexcept { return 0; }
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -17,11 +17,15 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+namespace detail {
+
 /// A = mass M + stiffness K.
 struct StepFactors {
   double mass = 0.0, stiffness = 0.0;
   friend bool operator==(const StepFactors&, const StepFactors&) = default;
 };
+
+}  // namespace detail
 
 /// Requirements of CorotatedMotion on a preconditioner P for A:
 /// - `P(body, rest, limits)`: set-up.
@@ -31,8 +35,8 @@ struct StepFactors {
 // clang-format off
 template <class P, class Tetrahedra>
 concept StepPreconditioner =
-    std::constructible_from<P, const DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
-    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX& u, VectorX& z) {
+    std::constructible_from<P, const detail::DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
+    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const detail::StepFactors& factors, const VectorX& u, VectorX& z) {
       { p.update(tetrahedra, factors, u, true) } noexcept;
       { fixed.apply(u, z) } noexcept;
     };
@@ -41,10 +45,10 @@ concept StepPreconditioner =
 /// The inverse 3 x 3 diagonal blocks of A, updated when due. One block product per node and application.
 class BlockJacobi {
  public:
-  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
+  BlockJacobi(const detail::DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
 
   template <class Tetrahedra>
-  void update(const Tetrahedra& tetrahedra, const StepFactors& factors, const VectorX&, bool again) noexcept {
+  void update(const Tetrahedra& tetrahedra, const detail::StepFactors& factors, const VectorX&, bool again) noexcept {
     if (!again) return;
     tetrahedra.diagonal_blocks(straight_, mixed_);
     for (std::size_t i = 0; i < inverse_.size(); ++i) {
@@ -72,7 +76,7 @@ class BlockJacobi {
 /// again when the factors of M and K change, which takes unbounded time; rotations are fitted in every step.
 class CorotatedFactor {
  public:
-  CorotatedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+  CorotatedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
       : corotated_(body),
         lumped_(body.lumped),
         stiffness_(assemble_stiffness<Tet4>(rest, limits)),
@@ -81,7 +85,7 @@ class CorotatedFactor {
   CorotatedFactor& operator=(const CorotatedFactor&) = delete;
 
   template <class Tetrahedra>
-  void update(const Tetrahedra&, const StepFactors& factors, const VectorX& u, bool) noexcept {
+  void update(const Tetrahedra&, const detail::StepFactors& factors, const VectorX& u, bool) noexcept {
     if (factors != factors_) {
       BlockMatrix& a = factor_.matrix();
       a.set_zero();
@@ -95,14 +99,14 @@ class CorotatedFactor {
   void apply(const VectorX& r, VectorX& z) const noexcept { corotated_.solve(factor_, r, z); }
 
  private:
-  mutable CorotatedSolve corotated_;
+  mutable detail::CorotatedSolve corotated_;
   VectorX lumped_;
   BlockMatrix stiffness_;
-  mutable TangentSolver factor_;
-  StepFactors factors_;
+  mutable detail::TangentSolver factor_;
+  detail::StepFactors factors_;
 };
 
-inline BlockJacobi::BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
+inline BlockJacobi::BlockJacobi(const detail::DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
     : lumped_(body.lumped),
       constrained_(body.conditions.constrained),
       straight_(3 * lumped_.size()),

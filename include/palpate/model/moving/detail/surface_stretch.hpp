@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// For the displacement of contact points that the mesh does not show (SubfacetCompliance), at large strain. That of an
 /// unstretched half-space at rest is u = G f. A tool that presses deep stretches the surface, by lambda in both
@@ -44,15 +44,11 @@ class SurfaceStretch {
   std::vector<double> rest_, area_;  // of the triangles around it, at rest and now, twice [m^2]
 };
 
-namespace detail {
-
 /// Twice the area of a triangle along its normal.
 inline Vector3 area_vector(const std::vector<Vector3>& x, const Triangle& t) noexcept {
   const Vector3& first = x[static_cast<std::size_t>(t[0])];
   return (x[static_cast<std::size_t>(t[1])] - first).cross(x[static_cast<std::size_t>(t[2])] - first);
 }
-
-}  // namespace detail
 
 inline SurfaceStretch::SurfaceStretch(const std::vector<Vector3>& rest, std::vector<Triangle> triangles)
     : triangles_(std::move(triangles)),
@@ -61,8 +57,8 @@ inline SurfaceStretch::SurfaceStretch(const std::vector<Vector3>& rest, std::vec
       area_(rest.size(), 0.0) {
   for (const Triangle& t : triangles_)
     for (const int v : t) {
-      normal_[static_cast<std::size_t>(v)] += detail::area_vector(rest, t);
-      rest_[static_cast<std::size_t>(v)] += detail::area_vector(rest, t).norm();
+      normal_[static_cast<std::size_t>(v)] += area_vector(rest, t);
+      rest_[static_cast<std::size_t>(v)] += area_vector(rest, t).norm();
     }
   for (Vector3& n : normal_) n.normalize();
 }
@@ -72,7 +68,7 @@ inline void SurfaceStretch::find(const std::vector<Vector3>& positions, const st
   constexpr double largest = 3.0;
   std::fill(area_.begin(), area_.end(), 0.0);
   for (const Triangle& t : triangles_) {
-    const double area = detail::area_vector(positions, t).norm();
+    const double area = area_vector(positions, t).norm();
     for (const int v : t) area_[static_cast<std::size_t>(v)] += area;
   }
   for (std::size_t i = 0; i < area_.size(); ++i) {
@@ -82,4 +78,4 @@ inline void SurfaceStretch::find(const std::vector<Vector3>& positions, const st
   }
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

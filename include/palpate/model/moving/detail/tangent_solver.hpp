@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Lower half of K_ff on a pattern that is built once; new values are copied without allocation or search. 8 bytes per
 /// entry in addition to the matrix.
@@ -175,4 +175,4 @@ inline DofLayout TangentSolver::layout(const EssentialConditions& conditions, co
   return layout;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Displacement of touchable vertices within a step per force on another, computed in the settled state and rotated
 /// with the vertices: C_ij = R_i C0_ij R_j^T (compliance warping, Saupin et al. 2008). Stores 72 bytes per pair of
@@ -133,4 +133,4 @@ class VertexCompliance {
   std::vector<double> side_;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// p99 of the processor time of ticks in which the sphere of a servo, made with `rigid_press_options`, presses these
 /// points by up to half of its radius [s].
@@ -85,7 +85,7 @@ class CandidateMaker {
   std::string reference_remark_;        // of the fine tissue, or why it was not made
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/static/detail/candidate_maker.ipp>

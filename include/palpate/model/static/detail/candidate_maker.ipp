@@ -17,9 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The supports and the touchable part of a scene, without its loads.
 inline Scene scene_at_rest(const Scene& scene) {
@@ -58,8 +56,6 @@ class PressableTissue : public HapticFEModel<Tet4, LinearElastic> {
   EssentialConditions conditions_;
 };
 
-}  // namespace detail
-
 PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
                                             const std::vector<SurfacePoint>& points) {
   constexpr int ticks = 600, rounds = 2;
@@ -90,7 +86,7 @@ PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
 
 /// The model of Tet4 on the mesh as given, and the errors measured from it.
 struct CandidateMaker::Base {
-  detail::PressableTissue tissue;
+  PressableTissue tissue;
   ForceErrorMeasurement errors;
 
   Base(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials, int places,
@@ -102,7 +98,7 @@ PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scen
                                               const RegionMaterials<LinearElastic>& materials,
                                               const SuggestBudget& budget)
     : mesh_(mesh),
-      scene_(name_listed_nodes(mesh_, detail::scene_at_rest(scene))),
+      scene_(name_listed_nodes(mesh_, scene_at_rest(scene))),
       materials_(materials),
       budget_(budget),
       start_(platform::compute_ns()) {
@@ -314,4 +310,4 @@ PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
   return models;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

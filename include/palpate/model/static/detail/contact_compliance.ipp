@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 template <std::floating_point Scalar>
 ComplianceColumns<Scalar>::ComplianceColumns(std::vector<Index> kept_index, int slots, const SetupLimits& limits)
@@ -220,4 +220,4 @@ template class ContactCompliance<float>;
 template class ContactCompliance<double>;
 #endif
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

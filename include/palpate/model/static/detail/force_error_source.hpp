@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Keeps references.
 struct ForceErrorSource {
@@ -22,4 +22,4 @@ struct ForceErrorSource {
   const MeshRef* coarse;                ///< ForceErrorOptions::coarse
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

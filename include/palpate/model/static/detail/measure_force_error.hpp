@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Presses a sphere into the tissue at some places of its surface, far from each other: over a vertex, an edge and a
 /// facet, to depths of a 32nd to a half of its radius; then into Smoothed<Tet4> tissue on a mesh with edges of at most
@@ -95,7 +95,7 @@ std::shared_ptr<const ForceAccuracy> measure_force_error(const ForceErrorSource&
 /// Enters the findings in a report; flags errors above a tenth of the force, with the length of facets that would do.
 void report_accuracy(const AccuracyReport& accuracy, SetupReport& report);
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/model/static/detail/measure_force_error.ipp>

@@ -16,7 +16,7 @@
 #include <string>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE ForceErrorMeasurement::ForceErrorMeasurement(const ForceErrorSource& source) : source_(source) {
   report_.radius = source.radius;
@@ -428,4 +428,4 @@ PALPATE_INLINE void report_accuracy(const AccuracyReport& accuracy, SetupReport&
                                             number(std::round(1e4 * edge) / 10.0) + " mm");
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

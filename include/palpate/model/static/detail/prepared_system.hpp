@@ -15,9 +15,15 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryReader;
 class ElasticBody;
+namespace detail {
+
 class PreparedCache;
 class FreeStiffness;
+
+}  // namespace detail
 struct EssentialConditions;
+
+namespace detail {
 
 /// The type-erased functions and constants of a solver policy. See solver_recipe.
 struct SolverRecipe {
@@ -60,8 +66,6 @@ struct SystemSource {
 
   static constexpr double refused_softest_error = 0.1;
 };
-
-namespace detail {
 
 inline constexpr double flagged_probe_error = 1e-6, flagged_condition = 1e12, refused_probe_error = 1e-3;
 

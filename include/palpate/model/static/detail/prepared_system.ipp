@@ -15,9 +15,7 @@
 #include <limits>
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A system as a LinearSolver that solves on the threads of a set-up and reports progress before every solve. After a
 /// cancellation it only returns NaN, which ends an estimate; then `require_going_on` throws.
@@ -59,8 +57,6 @@ class CheckingSolver {
   int solves_ = 0;
 };
 
-}  // namespace detail
-
 PALPATE_INLINE AnyStaticSystem SystemSource::prepare(const std::string& cache_file, SetupReport& report) const {
   if (!cache_file.empty()) {
     if (recipe.read != nullptr) return prepare_with(cache_file, report);
@@ -97,16 +93,16 @@ PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& 
   cache.payload().value(condition);
   std::optional<AnyStaticSystem> system(recipe.read(cache.payload(), *stiffness.matrix(), conditions, dofs, limits));
   if (!cache.verify()) return std::nullopt;
-  detail::CheckingSolver solver(*system, limits);
+  CheckingSolver solver(*system, limits);
   const double error = probe_error(FreeStiffness(stiffness.view(), conditions), solver);
   solver.require_going_on();
-  if (!(error <= detail::refused_probe_error)) {
+  if (!(error <= refused_probe_error)) {
     cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
     return std::nullopt;
   }
   report.condition_estimate = condition;
   report.probe_error = error;
-  detail::judge_accuracy(recipe.iterative, report);
+  judge_accuracy(recipe.iterative, report);
   return system;
 }
 
@@ -119,13 +115,13 @@ PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {
   const FreeStiffness free(stiffness.view(), conditions);
   estimate_accuracy(free, system, report);
   require_softest_motion(free, system, report);
-  detail::judge_accuracy(recipe.iterative, report);
+  judge_accuracy(recipe.iterative, report);
   return system;
 }
 
 PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system,
                                                     SetupReport& report) const {
-  detail::CheckingSolver solver(system, limits);
+  CheckingSolver solver(system, limits);
   report.probe_error = probe_error(free, solver);
   report.condition_estimate = recipe.iterative
                                   ? condition_by_iteration(free, solver)
@@ -135,10 +131,9 @@ PALPATE_INLINE void SystemSource::estimate_accuracy(const FreeStiffness& free, A
 
 PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& free, AnyStaticSystem& system,
                                                          const SetupReport& report) const {
-  const bool doubtful =
-      report.probe_error > detail::flagged_probe_error || detail::is_ill_conditioned(report, recipe.iterative);
+  const bool doubtful = report.probe_error > flagged_probe_error || is_ill_conditioned(report, recipe.iterative);
   if (!doubtful) return;
-  detail::CheckingSolver solver(system, limits);
+  CheckingSolver solver(system, limits);
   const SoftestMotion softest = probe_softest_motion(free, solver);
   solver.require_going_on();
   if (!(softest.error > refused_softest_error)) return;
@@ -156,8 +151,6 @@ PALPATE_INLINE void SystemSource::require_softest_motion(const FreeStiffness& fr
   p.threshold = refused_softest_error;
   raise(std::move(p));
 }
-
-namespace detail {
 
 PALPATE_INLINE bool is_ill_conditioned(const SetupReport& report, bool iterative) noexcept {
   return report.condition_estimate > (iterative ? 0.1 : 1.0) * flagged_condition;
@@ -184,6 +177,4 @@ PALPATE_INLINE void judge_accuracy(bool iterative, SetupReport& report) {
                    ": a change of parameters in the last digits changes the forces noticeably");
 }
 
-}  // namespace detail
-
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// A point of a surface and the direction against which it is pressed, unit.
 struct SurfacePoint {
@@ -60,4 +60,4 @@ inline std::vector<PressedPoint> press_points(HapticServo& servo, double radius,
   return pressed;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Smoothed<Tet4> with the elasticity of every region, and Condensed<SelectiveInverse>. The mesh needs no admission.
 class ReferenceTissue : public LinearTissue<double> {
@@ -34,8 +34,8 @@ inline ReferenceTissue::ReferenceTissue(Mesh<Tet4> mesh, std::vector<Matrix6> el
   Body<E> body{copy_mesh<E>(mesh), std::move(elasticity), std::vector<double>(regions, 0.0),
                std::vector<Vector6>(regions, Vector6::Zero())};
   admitted.body = std::make_unique<ElementBody<E>>(std::move(body));
-  set_up(scene, std::move(admitted), detail::make_stiffness<E, Assembled>, solver_recipe<Condensed<SelectiveInverse>>(),
+  set_up(scene, std::move(admitted), make_stiffness<E, Assembled>, solver_recipe<Condensed<SelectiveInverse>>(),
          options);
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -38,13 +38,13 @@ Uncondensed SolverTraits<BasicSelectiveInverse<S>>::read(BinaryReader& in, const
 template <class Inner>
 CondensedSystem SolverTraits<Condensed<Inner>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
                                                      const DofLayout& layout, const SetupLimits& limits) {
-  return detail::make_condensed(CondensedTraits<Inner>::kind, k, conditions, layout, limits);
+  return detail::make_condensed(detail::CondensedTraits<Inner>::kind, k, conditions, layout, limits);
 }
 template <class Inner>
 CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const BlockMatrix& k,
                                                      const EssentialConditions& conditions, const DofLayout& layout,
                                                      const SetupLimits& limits) {
-  return detail::read_condensed(CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
+  return detail::read_condensed(detail::CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
 }
 
 /// A policy whose prepared system can be stored: `cache_name` is unique, the system has `write`, and `read` restores it
@@ -72,8 +72,6 @@ AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) 
   return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
 }
 
-}  // namespace detail
-
 /// The recipe of a policy.
 template <SolverPolicy Policy>
 constexpr SolverRecipe solver_recipe() noexcept {
@@ -82,7 +80,7 @@ constexpr SolverRecipe solver_recipe() noexcept {
   SolverRecipe recipe{};
   recipe.scalar_bytes = sizeof(typename Traits::Scalar);
   recipe.eager = Traits::eager;
-  recipe.iterative = detail::is_iterative<Policy>;
+  recipe.iterative = is_iterative<Policy>;
   recipe.make = [](const AnyStiffness& k, const EssentialConditions& conditions, const DofLayout& layout,
                    const SetupLimits& limits) {
     if constexpr (stored)
@@ -99,5 +97,7 @@ constexpr SolverRecipe solver_recipe() noexcept {
   }
   return recipe;
 }
+
+}  // namespace detail
 
 }}  // namespace palpate

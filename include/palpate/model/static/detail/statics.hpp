@@ -22,7 +22,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// copyable nor movable, because the solver refers to members.
 class Statics {
  public:
-  using MakeStiffness = std::function<AnyStiffness(const ElasticBody&, const SetupLimits&)>;
+  using MakeStiffness = std::function<detail::AnyStiffness(const ElasticBody&, const SetupLimits&)>;
   /// Receives a displacement, 3 per node [m], before it is accepted; may throw.
   using Look = std::function<void(const VectorX&)>;
 
@@ -30,7 +30,7 @@ class Statics {
   /// stored in `cache_file`. Throws the errors of assembly, factorisation and checks: unconstrained,
   /// not_positive_definite, ill_conditioned ...; cache problems never throw.
   Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
-          const MakeStiffness& make_stiffness, const SolverRecipe& recipe, const SetupLimits& limits,
+          const MakeStiffness& make_stiffness, const detail::SolverRecipe& recipe, const SetupLimits& limits,
           const std::string& cache_file, SetupReport& report);
   Statics(const Statics&) = delete;
   Statics& operator=(const Statics&) = delete;
@@ -58,7 +58,7 @@ class Statics {
   const EssentialConditions& conditions() const noexcept { return conditions_; }
   const VectorX& displacement() const noexcept { return displacement_; }
   /// A copy of the solver with its own workspace; factors are shared.
-  AnyStaticSystem system() const { return system_; }
+  detail::AnyStaticSystem system() const { return system_; }
 
   /// Internal force K u - f_0, 3 per node [N].
   VectorX internal_force() const;
@@ -83,24 +83,24 @@ class Statics {
 
   ElasticBody* body_;
   EssentialConditions conditions_;
-  AnyStiffness stiffness_;
-  AnyStaticSystem system_;
+  detail::AnyStiffness stiffness_;
+  detail::AnyStaticSystem system_;
   VectorX mass_, applied_, load_, strain_load_, full_load_, displacement_;
   VectorX free_load_, free_answer_, scratch_;
 };
 
 inline Statics::Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
-                        const MakeStiffness& make_stiffness, const SolverRecipe& recipe, const SetupLimits& limits,
-                        const std::string& cache_file, SetupReport& report)
+                        const MakeStiffness& make_stiffness, const detail::SolverRecipe& recipe,
+                        const SetupLimits& limits, const std::string& cache_file, SetupReport& report)
     : body_(&body), conditions_(body_->conditions(scene)) {
   body_->require_constrained(conditions_);
   {
-    const StageTimer timer(report, "assembly");
+    const detail::StageTimer timer(report, "assembly");
     stiffness_ = make_stiffness(*body_, limits);
   }
   const DofLayout dofs = layout(kept_nodes);
   report.kept_dofs = static_cast<Index>(dofs.kept.size());
-  const SystemSource source{recipe, *body_, conditions_, stiffness_, kept_nodes, dofs, limits};
+  const detail::SystemSource source{recipe, *body_, conditions_, stiffness_, kept_nodes, dofs, limits};
   system_ = source.prepare(cache_file, report);
   free_load_ = VectorX::Zero(conditions_.free_count());
   free_answer_.resize(conditions_.free_count());

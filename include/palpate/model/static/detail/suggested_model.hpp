@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// What a suggested composition may cost. All positive; infinity: any. Times are processor times of a thread, which an
 /// idle machine needs.
@@ -34,4 +34,4 @@ struct SuggestedModel {
   std::string name() const;
 };
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -15,15 +15,13 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The same body in linear tetrahedra, with the same corner nodes on its surface.
 struct TetrahedralCopy {
   Mesh<Tet4> mesh;            ///< regions: material of every element; no groups
   std::vector<NodeId> nodes;  ///< node of `mesh` for every node of the body, -1 if it has none
 };
-
-namespace detail {
 
 /// Collects the tetrahedra of a copy and the nodes that they use.
 class TetrahedralCopyMaker {
@@ -120,8 +118,6 @@ inline bool has_nodes_of(const MeshRef& body, const MeshRef& coarse, const std::
   return true;
 }
 
-}  // namespace detail
-
 /// Tet4 stays as it is, Tet10 becomes one or, where an edge of the body is curved, eight tetrahedra; Hex8 and Hex20
 /// become twelve around a node in their middle, with edges through the least node of every face so that neighbours
 /// conform. Empty for other elements. `material` gives the material of an element. O(elements), allocates.
@@ -134,7 +130,7 @@ inline std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh, cons
       one_kind && element.face_count == 6 &&
       ((element.nodes == 8 && element.face.nodes == 4) || (element.nodes == 20 && element.face.nodes == 8));
   if (!tet4 && !tet10 && !hexahedron) return std::nullopt;
-  detail::TetrahedralCopyMaker maker(mesh);
+  TetrahedralCopyMaker maker(mesh);
   bool straight = true;
   for (Index e = 0; e < mesh.element_count && tet10 && straight; ++e) straight = maker.is_straight(mesh.nodes_of(e));
   for (Index e = 0; e < mesh.element_count; ++e) {
@@ -152,9 +148,9 @@ inline std::optional<TetrahedralCopy> tetrahedral_copy(const MeshRef& mesh, cons
 inline std::optional<TetrahedralCopy> coarse_copy(const MeshRef& coarse, const MeshRef& body,
                                                   const std::vector<NodeId>& node_map,
                                                   const std::function<int(Index)>& material) {
-  const std::vector<int> materials = detail::materials_of_regions(body, material);
+  const std::vector<int> materials = materials_of_regions(body, material);
   const auto same_names = [&] { return std::ranges::equal(coarse.region_names, body.region_names); };
-  if (materials.empty() || !same_names() || !detail::has_nodes_of(body, coarse, node_map)) return std::nullopt;
+  if (materials.empty() || !same_names() || !has_nodes_of(body, coarse, node_map)) return std::nullopt;
   auto copy = tetrahedral_copy(coarse, [&](Index e) { return materials[static_cast<std::size_t>(coarse.region(e))]; });
   if (!copy) return std::nullopt;
   std::vector<NodeId> nodes(static_cast<std::size_t>(body.node_count), -1);
@@ -167,4 +163,4 @@ inline std::optional<TetrahedralCopy> coarse_copy(const MeshRef& coarse, const M
   return copy;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Where the line through a point of the surface, in the direction in which it is pressed, leaves the body.
 struct LineExit {
@@ -66,4 +66,4 @@ inline bool refine_through(Mesh<Tet4>& mesh, double thickness) {
   return true;
 }
 
-}}  // namespace palpate
+}}}  // namespace palpate::detail
