@@ -1,6 +1,7 @@
 // The scene: the organ, its materials, its supports, and the path of the tool.
 #pragma once
 
+#include <palpate/io.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
 

@@ -117,7 +117,7 @@ double look(Organ& organ, HapticServo& servo, VectorX& u) {
 }
 
 int run(double seconds, bool paced) {
-  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  const auto mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   Organ organ(mesh, Scene().fix("ligament").touch("front").render("surface"),
               {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   std::cout << organ.report();

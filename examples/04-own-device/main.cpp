@@ -34,7 +34,7 @@ bool keeps_the_laws() {
 int run() {
   if (!keeps_the_laws()) return 1;
 
-  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  const auto mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   using Organ = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
   Organ organ(mesh, Scene().fix("ligament").touch("front"),
               {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});

@@ -81,7 +81,7 @@ bool keeps_the_laws(const char* name, const M& mesh) {
 }
 
 int run() {
-  const auto file = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  const auto file = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
 
   const own::SimulatorBody body = load_into_simulator(file);
 

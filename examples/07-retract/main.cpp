@@ -20,7 +20,7 @@
 #include "../common/page.hpp"
 
 #include <palpate/io/pvd.hpp>
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 #include <palpate/io/vtu.hpp>
 #include <palpate/mesh/selection.hpp>
 #include <palpate/soft.hpp>
@@ -87,7 +87,7 @@ Pull retract(const Mesh<Tet4>& mesh, const std::filesystem::path& out) {
 }
 
 int run_example(const std::filesystem::path& out) {
-  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  const auto mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   const Pull p = retract(mesh, out);
 
   const double end = p.force.back()[0], first = p.force[1][1] / p.force[1][0];  // per mm, of the first step

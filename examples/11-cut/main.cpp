@@ -116,7 +116,7 @@ double cut_apart(Organ& tissue, Index elements, Record& record) {
 }
 
 int run_example(const std::filesystem::path& out) {
-  const auto mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  const auto mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   Organ tissue(mesh, make_scene(mesh), {.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0});
   Record record(out);
   record.add(tissue, 0.0, "under tension");

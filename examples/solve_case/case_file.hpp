@@ -2,6 +2,8 @@
 // skipped.
 #pragma once
 
+#include <palpate/elements.hpp>
+#include <palpate/io.hpp>
 #include <palpate/palpate.hpp>
 
 #include <nlohmann/json.hpp>

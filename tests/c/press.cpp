@@ -1,5 +1,6 @@
 // The press of press.c with the C++ composition itself: the same output.
 #include <palpate/core/platform.hpp>
+#include <palpate/io.hpp>
 #include <palpate/palpate.hpp>
 
 #include <cstdio>

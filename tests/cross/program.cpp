@@ -58,18 +58,18 @@ struct Type {
 };
 
 const Type& type_of(const std::string& word) {
-  static const std::string soft = "palpate/soft.hpp", cut = "palpate/cut.hpp",
-                           cut_moving = "palpate/cut/cuttable_moving.hpp";
+  static const std::string soft = "palpate/soft.hpp", cut = "palpate/cut.hpp", elements = "palpate/elements.hpp",
+                           cut_moving = "palpate/cut/cuttable_moving.hpp", materials = "palpate/materials.hpp";
   static const std::map<std::string, Type> types{
       {"tet4", {"Tet4"}},
       {"smoothed_tet4", {"Smoothed<Tet4>"}},
-      {"tet10", {"Tet10", "palpate/mesh/promote.hpp"}},
-      {"hex8", {"Hex8"}},
-      {"hex20", {"Hex20", "palpate/mesh/promote.hpp"}},
-      {"mean_dilatation_hex8", {"MeanDilatation<Hex8>"}},
+      {"tet10", {"Tet10", elements}},
+      {"hex8", {"Hex8", elements}},
+      {"hex20", {"Hex20", elements}},
+      {"mean_dilatation_hex8", {"MeanDilatation<Hex8>", elements}},
       {"linear", {"LinearElastic"}},
-      {"transversely_isotropic", {"TransverselyIsotropic"}},
-      {"orthotropic", {"Orthotropic"}},
+      {"transversely_isotropic", {"TransverselyIsotropic", materials}},
+      {"orthotropic", {"Orthotropic", materials}},
       {"corotational", {"Corotational<LinearElastic>", soft}},
       {"st_venant_kirchhoff", {"StVenantKirchhoff", soft}},
       {"neo_hookean", {"NeoHookean", soft}},
@@ -465,12 +465,13 @@ class Program {
   }
   void member_of(const std::string& arguments) {
     if (s_.member == "adaptor") line("TissueAdaptor<Tissue> adaptor(tissue);");
-    if (s_.member == "group") line("TissueGroup group(tissue);");
+    if (s_.member == "group") headers_.insert("palpate/tools.hpp"), line("TissueGroup group(tissue);");
     if (s_.member != "pair") return;
     const double far = 10.0 * body_.size;
     line("Tissue second(" + arguments + ");");
     line("second.set_pose(" + std::string(rotated_ ? "pose * " : "Eigen::Isometry3d(") + "Eigen::Translation3d(" +
          text_of(Vector3(far, far, 0.0)) + ")" + (rotated_ ? "" : ")") + ");");
+    headers_.insert("palpate/tools.hpp");
     line("TissueGroup group(tissue, second);");
   }
 

@@ -1,6 +1,8 @@
 // The cache file of a prepared model: same results, and every difference is named.
 #include <sstream>
+#include <string_view>
 #include <thread>
+#include <utility>
 
 #include "model/cache_folder.hpp"
 
@@ -31,6 +33,28 @@ struct Setup {
 };
 
 }  // namespace
+
+TEST_CASE("a cache file is named by any string, and its copies are used like it", "[model][cache]") {
+  const CacheFolder folder;
+  const std::string name = folder.cache().string();
+  CHECK(SetupOptions{}.cache_file.empty());
+  CHECK(SetupOptions{.cache_file = ""}.cache_file.empty());
+  CHECK(SetupOptions{.cache_file = "a"}.cache_file.name() == "a");
+  SetupOptions options;
+  options.cache_file = name.c_str();
+  CHECK(options.cache_file.name() == name);
+  options.cache_file = std::string_view(name);
+  CHECK(options.cache_file.name() == name);
+  options = SetupOptions{.cache_file = name};
+  const SetupOptions copy = options, moved = std::move(options);
+  const std::string text = copy.cache_file;
+  CHECK(text == name);
+  CHECK(Setup{}.make(copy)->report().cache.written);
+  CHECK(Setup{}.make(moved)->report().cache.read);
+  options = copy;
+  options.cache_file = {};
+  CHECK(Setup{}.make(options)->report().cache.file.empty());
+}
 
 TEST_CASE("a model from a cache gives the results of the one that wrote it, bit for bit", "[model][cache][M14]") {
   for (PolicyName policy : cacheable) {

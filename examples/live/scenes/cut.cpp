@@ -2,7 +2,7 @@
 //
 // The organ is pulled at one end, so a slit gapes. The blade renders the force of cutting: toughness times the length
 // of edge in the tissue. Cuts are computed in the background; ticks never wait for them.
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 #include <palpate/mesh/diagnose.hpp>
 
 #include "scenes.hpp"
@@ -14,7 +14,7 @@ TouchScene cut_scene() {
   scene.name = "cut";
   scene.text = "A blade, its edge along the view. Set it on the organ, push it in with the wheel, and drag.";
 
-  scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  scene.mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};
 
   // 1. The tool: a sharp edge of 50 mm, fixed in the world.

@@ -2,7 +2,7 @@
 //
 // Two devices, two tools, one contact problem: what one finger does, the other one renders, in the same tick. Tab
 // changes the tool that the mouse moves; the other one stays where it is.
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 
 #include "scenes.hpp"
 
@@ -15,7 +15,7 @@ TouchScene grasp_scene() {
       "Two fingers. Push one against the lobe from above, take the other with Tab, and pinch it from the side. "
       "With key G each holds a pad.";
 
-  scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  scene.mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};
 
   // 1. Two tools, with friction: without it a pinched lobe slips out like a wet soap.

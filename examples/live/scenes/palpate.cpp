@@ -2,7 +2,7 @@
 //
 // A liver lies on its underside. Somewhere under the touchable front is a lump ten times as stiff as the rest; nothing
 // of it can be seen. Press at several places and compare the forces, guess, then reveal it with key L.
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 
 #include "scenes.hpp"
 
@@ -15,7 +15,7 @@ TouchScene palpate_scene() {
       "Somewhere under the front is a lump ten times as stiff as the rest. Press, compare, guess; then reveal it.";
 
   // 1. The organ: a mesh with named groups, and a material for each of its regions.
-  scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  scene.mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = "parenchyma", .youngs_modulus = 5e3}, {.region = "lesion", .youngs_modulus = 50e3}};
   scene.hidden_region = "lesion";
 

@@ -2,7 +2,7 @@
 //
 // At large strain and rotation linear elasticity is wrong: a lobe that is lifted would grow. Here each step of the
 // background finds the equilibrium of a neo-Hookean organ, and every tick solves the contact on the newest one.
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 
 #include "scenes.hpp"
 
@@ -14,7 +14,7 @@ TouchScene retract_scene() {
   scene.text = "Take a pad of the thin lobe with key G while the retractor touches it, and lift it by dragging.";
 
   // 1. The same organ, with one material: the lump does not matter here.
-  scene.mesh = io::read_mesh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
+  scene.mesh = io::read_msh<Tet4>(PALPATE_EXAMPLE_DATA "/organ.msh");
   scene.tissues = {{.region = everywhere, .youngs_modulus = 5e3}};
 
   // 2. While button 1 is pressed (key G), the tool holds the vertices within 14 mm of the point that it touches: a

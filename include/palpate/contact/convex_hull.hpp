@@ -8,6 +8,21 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class ContactSurface;
+struct ContactTool;
+
+namespace detail {
+
+/// The functions that place a convex tool next to the surface (hull_placement.hpp). Its hull carries them, so that only
+/// programs that make a ConvexTool have their code.
+struct HullPlacement {
+  void (*beside)(ContactTool&, const ContactSurface&) noexcept;
+  double (*first_touch)(const ContactTool&, const ContactSurface&, const Vector3& from,
+                        const Vector3& position) noexcept;
+};
+
+}  // namespace detail
+
 /// A point, a segment, a plane convex polygon or a convex polyhedron: the convex hull of 1 to 64 points. Constant after
 /// construction; queries do not allocate.
 class ConvexHull {
@@ -43,9 +58,13 @@ class ConvexHull {
   /// The closest point of the boundary. Outside it is in the face whose plane is farthest below `p`, or else on an edge
   /// of a visible face; inside it is in the nearest face. The signed distance is convex. Exact; work bounded by the
   /// number of faces and edges (12 and 6 for a box).
-  Closest closest(const Vector3& p) const noexcept;
+  Closest closest(const Vector3& p) const noexcept { return closest_(*this, p); }
+
+  /// For servos: null unless it is the hull of a ConvexTool.
+  const detail::HullPlacement* placement() const noexcept { return placement_; }
 
  private:
+  friend class ConvexTool;
   struct Face {
     Vector3 normal;  // unit, outward
     double offset;   // of its plane along the normal
@@ -66,6 +85,7 @@ class ConvexHull {
   void add_face(std::span<const int> corners);
   void add_edges(const std::vector<std::vector<int>>& faces);
   void bound();
+  static Closest find_closest(const ConvexHull& hull, const Vector3& p) noexcept;
   inline bool covers(const Face& face, const Vector3& p) const noexcept;
 
   int dimension_ = 0;
@@ -76,6 +96,9 @@ class ConvexHull {
   std::vector<Edge> edges_;
   Vector3 middle_ = Vector3::Zero();
   double radius_ = 0.0, extent_ = 0.0;
+  /// A pointer set by the constructor: a program that makes no hull has no code of it.
+  Closest (*closest_)(const ConvexHull&, const Vector3&) noexcept;
+  const detail::HullPlacement* placement_ = nullptr;
 };
 
 }}  // namespace palpate

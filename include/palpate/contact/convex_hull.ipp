@@ -204,7 +204,7 @@ PALPATE_INLINE HullPolygons hull_polygons(std::span<const Vector3> all) {
 
 }  // namespace detail
 
-PALPATE_INLINE ConvexHull::ConvexHull(std::span<const Vector3> points) {
+PALPATE_INLINE ConvexHull::ConvexHull(std::span<const Vector3> points) : closest_(&find_closest) {
   detail::HullPolygons hull = detail::hull_polygons(points);
   dimension_ = hull.dimension;
   vertices_ = std::move(hull.vertices);
@@ -279,21 +279,22 @@ inline bool ConvexHull::covers(const Face& face, const Vector3& p) const noexcep
   return true;
 }
 
-PALPATE_INLINE ConvexHull::Closest ConvexHull::closest(const Vector3& p) const noexcept {
+PALPATE_INLINE ConvexHull::Closest ConvexHull::find_closest(const ConvexHull& hull, const Vector3& p) noexcept {
   std::array<double, maximum_faces> heights;
   heights[0] = -infinity;
   std::size_t top = 0;
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    heights[f] = faces_[f].height(p);
+  for (std::size_t f = 0; f < hull.faces_.size(); ++f) {
+    heights[f] = hull.faces_[f].height(p);
     if (heights[f] > heights[top]) top = f;
   }
-  const bool inside = dimension_ == 3 && heights[top] <= 0.0;
-  const Vector3 normal = faces_.empty() ? Vector3(0.0, 0.0, 1.0) : faces_[top].normal;
-  if (inside || (!faces_.empty() && covers(faces_[top], p))) return {p - heights[top] * normal, normal, heights[top]};
-  const double rounding = 1e-12 * radius_;
-  Vector3 nearest = edges_.front().start;
+  const bool inside = hull.dimension_ == 3 && heights[top] <= 0.0;
+  const Vector3 normal = hull.faces_.empty() ? Vector3(0.0, 0.0, 1.0) : hull.faces_[top].normal;
+  if (inside || (!hull.faces_.empty() && hull.covers(hull.faces_[top], p)))
+    return {p - heights[top] * normal, normal, heights[top]};
+  const double rounding = 1e-12 * hull.radius_;
+  Vector3 nearest = hull.edges_.front().start;
   double least = infinity;
-  for (const Edge& e : edges_) {
+  for (const Edge& e : hull.edges_) {
     const auto is_hidden = [&](int face) { return heights[static_cast<std::size_t>(face)] < -rounding; };
     if (e.faces[0] >= 0 && is_hidden(e.faces[0]) && is_hidden(e.faces[1])) continue;
     const Vector3 offset = p - e.start;

@@ -5,7 +5,9 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/contact/detail/contact_samples.hpp>
+#include <palpate/contact/detail/servo_blade.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,8 @@ struct TissueFunctions {
   TissueClaim* (*claim)(void*) noexcept = nullptr;
   std::vector<std::string> (*notes)(const void*) = nullptr;
   bool (*refuses_units)(const void*) noexcept = nullptr;
+  /// With try_cut only: code of blades is compiled for a tissue that can be cut.
+  std::unique_ptr<ServoBlade> (*make_blade)(const BladeTool&, double stiffness) = nullptr;
 };
 
 template <class T>
@@ -130,8 +134,10 @@ struct TissueCalls {
       f.prepare_tools = [](void* t, const ToolRadii& radii, const ContactParameters& p) {
         of(t).prepare_tools(radii, p);
       };
-    if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>)
+    if constexpr (calls<decltype(hooked().try_cut(std::declval<const BladeSweep&>()))>) {
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
+      f.make_blade = &make_blade;
+    }
     if constexpr (calls<decltype(hooked().half_space_map(0))>)
       f.half_space_map = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).half_space_map(v); };
     if constexpr (requires(T & t) { t.claim(); })
@@ -240,6 +246,11 @@ class TissueView {
   bool can_be_cut() const noexcept { return functions_->try_cut != nullptr; }
   /// Requests a cut along the surface swept by a blade, world frame; false when the tissue cannot be cut, or not now.
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }
+  /// A blade for this tissue, with a coupling of that stiffness [N/m]; null when the tissue cannot be cut. Throws
+  /// bad_argument for an invalid blade or stiffness. Allocates.
+  std::unique_ptr<detail::ServoBlade> make_blade(const BladeTool& tool, double stiffness) const {
+    return can_be_cut() ? functions_->make_blade(tool, stiffness) : nullptr;
+  }
 
  private:
   template <class T>
@@ -265,3 +276,7 @@ inline Matrix3 TissueView::half_space_map_at(const detail::ContactSample& point)
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/servo_blade.ipp>
+#endif

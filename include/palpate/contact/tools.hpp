@@ -78,33 +78,6 @@ class ConvexTool {
   std::shared_ptr<const ConvexHull> hull_;
 };
 
-inline ConvexTool::ConvexTool(std::span<const Vector3> points, double radius) : radius_(radius) {
-  if (!(std::isfinite(radius) && radius > 0.0))
-    raise(SetupErrorKind::bad_argument, "the radius of a convex tool is " + number(radius),
-          "It is the rounding of the edges: finite and positive, in metres");
-  hull_ = std::make_shared<const ConvexHull>(points);
-  if (hull_->dimension() >= 2) return;
-  SetupProblem problem;
-  problem.what = hull_->dimension() == 0 ? "the points of a convex tool are all the same"
-                                         : "the points of a convex tool are all on one line";
-  problem.hint = hull_->dimension() == 0 ? "Use a SphereTool" : "Use a CapsuleTool";
-  raise(std::move(problem));
-}
-
-inline ConvexTool ConvexTool::box(const Vector3& size, double radius) {
-  const Vector3 half = 0.5 * size - Vector3(radius, radius, radius);
-  for (int i = 0; i < 3; ++i)
-    if (!(half[i] >= -1e-9 * radius))
-      raise(SetupErrorKind::bad_argument,
-            "a side of a rounded box is " + number(size[i]) + " m long, its radius " + number(radius) + " m",
-            "No side is shorter than two radii");
-  std::vector<Vector3> corners;
-  for (const double x : {-half[0], half[0]})
-    for (const double y : {-half[1], half[1]})
-      for (const double z : {-half[2], half[2]}) corners.emplace_back(x, y, z);
-  return ConvexTool(corners, radius);
-}
-
 /// A sharp edge with its middle at the tool's position. Its direction is fixed in the world: it does not rotate with
 /// the device. It cuts the surface that it sweeps, in any direction across itself; motion along itself, and in a slit
 /// that it has cut, has no resistance. For a tissue that can be cut (TissueModel: try_cut).
@@ -151,3 +124,7 @@ class ToolList {
 };
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/tools.ipp>
+#endif

@@ -1,7 +1,6 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
-#include <palpate/contact/detail/blade_inside.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/core/rigid_motion.hpp>
@@ -13,49 +12,6 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
-
-PALPATE_INLINE void ServoBlade::follow(const Vector3& hand, bool restart, const TissueView& tissue) noexcept {
-  status_ = {};
-  if (restart) cut_.lift();
-  const Vector3 before = cut_.edge();
-  force_ = cut_.advance(hand, restart ? 0.0 : width_inside(tissue));
-  if (restart) ordered_ = cut_.edge();
-  if (!restart && cut_.cut_from() != before) {  // through a slit, or out of the tissue: no cut between
-    if (order_cut(before, tissue, 1e-3 * cut_.tool().cut_spacing)) ordered_ = cut_.cut_from();
-  }
-  if (!order_cut(cut_.edge(), tissue, cut_.tool().cut_spacing)) status_.set(StatusFlag::degraded_model);
-}
-
-PALPATE_INLINE void ServoBlade::lift() noexcept {
-  cut_.lift();
-  force_.setZero();
-  status_ = {};
-}
-
-PALPATE_INLINE void ServoBlade::reset() noexcept {
-  cut_.reset();
-  force_.setZero();
-  ordered_.setZero();
-  status_ = {};
-}
-
-/// Length of the edge in tissue [m].
-PALPATE_INLINE double ServoBlade::width_inside(const TissueView& tissue) const noexcept {
-  const Eigen::Isometry3d to_model = inverse(tissue.to_world());
-  const Vector3 half = 0.5 * cut_.tool().edge;
-  return length_in_tissue(tissue.contact_surface(), to_model * (cut_.edge() - half), to_model * (cut_.edge() + half),
-                          cut_.tool().cut_spacing);
-}
-
-/// Requests a cut along the surface swept since the last request to an edge at `to`, unless its path is shorter than
-/// `least`; false when the tissue cannot accept it yet.
-PALPATE_INLINE bool ServoBlade::order_cut(const Vector3& to, const TissueView& tissue, double least) noexcept {
-  if ((to - ordered_).norm() < least) return true;
-  const Vector3 half = 0.5 * cut_.tool().edge;
-  if (!tissue.try_cut({ordered_ - half, ordered_ + half, to - half, to + half})) return false;
-  ordered_ = to;
-  return true;
-}
 
 static_assert(Servo<HapticServo>);
 
@@ -160,7 +116,7 @@ PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t t
     problem.set_ids({&id, 1});
     raise(std::move(problem));
   }
-  blades_[tool].emplace(blade, detail::coupling_stiffness_of(tool, options));
+  blades_[tool] = tissue_.make_blade(blade, detail::coupling_stiffness_of(tool, options));
 }
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {

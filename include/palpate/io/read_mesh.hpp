@@ -1,25 +1,11 @@
 // Reads a mesh from a file of any known format: the reader of every format, and read_mesh, which detects the format.
 #pragma once
 
-#include <palpate/io/decimal.hpp>
-#include <palpate/io/file.hpp>
-#include <palpate/io/file_mesh.hpp>
-#include <palpate/mesh/mesh_ref.hpp>
+#include <palpate/io/read_msh.hpp>
 
 #include <functional>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
-
-namespace gmsh {
-
-/// Reads a whole Gmsh file. The regions are the physical volumes; with `labels` "elementary" the elementary tags
-/// replace all physical tags and names. Files in which no solid has a physical tag, but several elementary ones, get a
-/// note. Errors: bad_file, index_out_of_range, count_too_large, non_finite, unsupported, each with file and line (in
-/// binary data: byte). Linear in the size of the text, O(n log n) if node ids are not 1 ... n; counts are compared with
-/// the size of the text before anything is allocated.
-FileMesh parse(std::string_view text, const std::string& name, std::string_view labels = {});
-
-}  // namespace gmsh
 
 namespace tetgen {
 
@@ -96,27 +82,6 @@ FileMesh parse(std::string_view text, const std::string& name);
 
 }  // namespace abaqus
 
-/// The mesh of a parsed file with elements of that layout, for which solid_shape must be valid; `numbering`, if given,
-/// receives the ids of the file.
-palpate::detail::PlainMesh build_plain_mesh(FileMesh file, const palpate::detail::ElementLayout& element, double scale,
-                                            MeshNumbering* numbering);
-
-/// The same as a mesh of E.
-template <Element E>
-Mesh<E> build_mesh(FileMesh file, double scale, MeshNumbering* numbering) {
-  static_assert(facts(solid_shape<E>()).nodes == E::nodes);
-  return to_mesh<E>(build_plain_mesh(std::move(file), palpate::detail::element_layout<E>, scale, numbering));
-}
-
-/// Options of the mesh readers.
-struct ReadOptions {
-  double scale = 1.0;                  ///< unit of the file in metres: 1e-3 for millimetres
-  MeshNumbering* numbering = nullptr;  ///< receives the ids of the file
-  /// The cell array of a VTK or VTU file with the labels of the regions, whole numbers; "elementary" in a Gmsh file
-  /// takes the elementary tags instead of the physical ones. Empty: what the format provides.
-  std::string labels{};
-};
-
 /// The file formats.
 enum class MeshFormat { gmsh, tetgen, medit, vtk, veg, abaqus, surface, unknown };
 
@@ -169,8 +134,6 @@ Mesh<E> read_mesh(const std::string& path, double scale, MeshNumbering* numberin
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/io/abaqus.ipp>
-#include <palpate/io/detail/gmsh_file.ipp>
-#include <palpate/io/detail/mesh_builder.ipp>
 #include <palpate/io/medit.ipp>
 #include <palpate/io/read_mesh.ipp>
 #include <palpate/io/tetgen.ipp>

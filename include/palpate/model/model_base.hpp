@@ -7,6 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/admission_policy.hpp>
 #include <palpate/mesh/scene.hpp>
+#include <palpate/model/cache/cache_file.hpp>
 #include <palpate/model/force_error_options.hpp>
 #include <palpate/model/setup_report.hpp>
 #include <palpate/model/static/detail/contact_compliance.hpp>
@@ -44,7 +45,7 @@ struct SetupOptions {
   /// states which.
   ColumnFill columns = ColumnFill::automatic;
   ForceErrorOptions force_error{};  ///< `measured_force_error()`: ticks give the error of their forces
-  std::string cache_file{};         ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
+  CacheFile cache_file{};           ///< stores the prepared system for the next set-up; empty: none. See docs/cache.md
 };
 
 /// The part of HapticFEModel that does not depend on element, material or solver. Base of all models.

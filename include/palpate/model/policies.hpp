@@ -19,6 +19,8 @@ class BinaryWriter;
 class BlockMatrix;
 class CondensedSystem;
 class DenseCholesky;
+template <std::floating_point Scalar>
+class DenseInverse;
 class SparseCholesky;
 class StiffnessView;
 class Uncondensed;
@@ -49,21 +51,22 @@ struct WithAssembly {};
 
 namespace detail {
 
-/// The dense solvers of shipped policies.
-enum class DenseKind { inverse, inverse_float, cholesky, conjugate_gradient };
-template <std::floating_point S>
-inline constexpr DenseKind inverse_kind = std::same_as<S, float> ? DenseKind::inverse_float : DenseKind::inverse;
+class DenseConjugateGradient;
 
+// Defined in policies.ipp, and compiled for the solvers that are named here.
 Uncondensed make_iterative(const StiffnessView& k, const EssentialConditions& conditions, const DofLayout& layout);
-Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
-                         const DofLayout& layout, const SetupLimits& limits);
-Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
-                         const DofLayout& layout, const SetupLimits& limits);
-CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
-                               const DofLayout& layout, const SetupLimits& limits);
-CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatrix& k,
-                               const EssentialConditions& conditions, const DofLayout& layout,
+template <std::floating_point S>
+Uncondensed make_inverse(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                         const SetupLimits& limits);
+template <std::floating_point S>
+Uncondensed read_inverse(BinaryReader& in, const EssentialConditions& conditions, const DofLayout& layout,
+                         const SetupLimits& limits);
+template <class Dense>
+CondensedSystem make_condensed(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                                const SetupLimits& limits);
+template <class Dense>
+CondensedSystem read_condensed(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                               const DofLayout& layout, const SetupLimits& limits);
 
 }  // namespace detail
 
@@ -111,7 +114,6 @@ struct SolverTraits<BasicSelectiveInverse<S>> {
   using Scalar = S;
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "SelectiveInverse";
-  static constexpr detail::DenseKind kind = detail::inverse_kind<S>;
   static Uncondensed make(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                           const SetupLimits& limits);
   static Uncondensed read(BinaryReader& in, const BlockMatrix&, const EssentialConditions& conditions,
@@ -126,21 +128,21 @@ struct CondensedTraits;
 template <std::floating_point S>
 struct CondensedTraits<BasicSelectiveInverse<S>> {
   using Scalar = S;
-  static constexpr DenseKind kind = inverse_kind<S>;
+  using Dense = DenseInverse<S>;
   static constexpr bool eager = true;
   static constexpr std::string_view cache_name = "Condensed<SelectiveInverse>";
 };
 template <>
 struct CondensedTraits<DenseCholesky> {
   using Scalar = double;
-  static constexpr DenseKind kind = DenseKind::cholesky;
+  using Dense = DenseCholesky;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<DenseCholesky>";
 };
 template <>
 struct CondensedTraits<ConjugateGradient> {
   using Scalar = double;
-  static constexpr DenseKind kind = DenseKind::conjugate_gradient;
+  using Dense = DenseConjugateGradient;
   static constexpr bool eager = false;
   static constexpr std::string_view cache_name = "Condensed<ConjugateGradient>";
 };

@@ -47,8 +47,9 @@ PALPATE_INLINE Uncondensed make_iterative(const StiffnessView& k, const Essentia
   return {IterativeSolver(FreeStiffness(k, conditions), {}), layout.kept};
 }
 
-PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, const EssentialConditions& conditions,
-                                        const DofLayout& layout, const SetupLimits& limits) {
+template <std::floating_point S>
+Uncondensed make_inverse(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                         const SetupLimits& limits) {
   const Index n = conditions.free_count();
   limits.require_memory(3.0 * static_cast<double>(n) * static_cast<double>(n) * sizeof(double),
                         "the inverse of the whole stiffness");
@@ -56,50 +57,46 @@ PALPATE_INLINE Uncondensed make_inverse(DenseKind kind, const BlockMatrix& k, co
   std::fill_n(lower.data(), lower.size(), 0.0);
   for_each_free_entry(k, conditions,
                       [&](Index row, Index column, double value) { lower.coeffRef(row, column) = value; });
-  if (kind == DenseKind::inverse_float) return {DenseInverse<float>(std::move(lower), limits), layout.kept};
-  return {DenseInverse<double>(std::move(lower), limits), layout.kept};
+  return {DenseInverse<S>(std::move(lower), limits), layout.kept};
 }
 
-PALPATE_INLINE Uncondensed read_inverse(DenseKind kind, BinaryReader& in, const EssentialConditions& conditions,
-                                        const DofLayout& layout, const SetupLimits& limits) {
-  if (kind == DenseKind::inverse_float)
-    return {DenseInverse<float>::read(in, conditions.free_count(), limits), layout.kept};
-  return {DenseInverse<double>::read(in, conditions.free_count(), limits), layout.kept};
+template <std::floating_point S>
+Uncondensed read_inverse(BinaryReader& in, const EssentialConditions& conditions, const DofLayout& layout,
+                         const SetupLimits& limits) {
+  return {DenseInverse<S>::read(in, conditions.free_count(), limits), layout.kept};
 }
 
-PALPATE_INLINE CondensedSystem make_condensed(DenseKind kind, const BlockMatrix& k,
-                                              const EssentialConditions& conditions, const DofLayout& layout,
-                                              const SetupLimits& limits) {
-  SchurComplement schur = condense(free_matrix(k, conditions), layout, limits);
-  switch (kind) {
-    case DenseKind::inverse_float:
-      return CondensedSystem::with<DenseInverse<float>>(std::move(schur), limits);
-    case DenseKind::cholesky:
-      return CondensedSystem::with<DenseCholesky>(std::move(schur), limits);
-    case DenseKind::conjugate_gradient:
-      return CondensedSystem::with<DenseConjugateGradient>(std::move(schur), limits);
-    case DenseKind::inverse:
-      break;
-  }
-  return CondensedSystem::with<DenseInverse<double>>(std::move(schur), limits);
+template <class Dense>
+CondensedSystem make_condensed(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+                               const SetupLimits& limits) {
+  return CondensedSystem::with<Dense>(condense(free_matrix(k, conditions), layout, limits), limits);
 }
 
-PALPATE_INLINE CondensedSystem read_condensed(DenseKind kind, BinaryReader& in, const BlockMatrix& k,
-                                              const EssentialConditions& conditions, const DofLayout& layout,
-                                              const SetupLimits& limits) {
-  CholeskyAnalysis analysis(free_matrix(k, conditions), layout, limits);
-  switch (kind) {
-    case DenseKind::inverse_float:
-      return CondensedSystem::read<DenseInverse<float>>(in, std::move(analysis), limits);
-    case DenseKind::cholesky:
-      return CondensedSystem::read<DenseCholesky>(in, std::move(analysis), limits);
-    case DenseKind::conjugate_gradient:
-      return CondensedSystem::read<DenseConjugateGradient>(in, std::move(analysis), limits);
-    case DenseKind::inverse:
-      break;
-  }
-  return CondensedSystem::read<DenseInverse<double>>(in, std::move(analysis), limits);
+template <class Dense>
+CondensedSystem read_condensed(BinaryReader& in, const BlockMatrix& k, const EssentialConditions& conditions,
+                               const DofLayout& layout, const SetupLimits& limits) {
+  return CondensedSystem::read<Dense>(in, CholeskyAnalysis(free_matrix(k, conditions), layout, limits), limits);
 }
+
+#if !PALPATE_HEADER_ONLY
+#define PALPATE_DENSE_SOLVER(...)                                                                                     \
+  template CondensedSystem make_condensed<__VA_ARGS__>(const BlockMatrix&, const EssentialConditions&,                \
+                                                       const DofLayout&, const SetupLimits&);                         \
+  template CondensedSystem read_condensed<__VA_ARGS__>(BinaryReader&, const BlockMatrix&, const EssentialConditions&, \
+                                                       const DofLayout&, const SetupLimits&);
+#define PALPATE_WHOLE_INVERSE(S)                                                                         \
+  template Uncondensed make_inverse<S>(const BlockMatrix&, const EssentialConditions&, const DofLayout&, \
+                                       const SetupLimits&);                                              \
+  template Uncondensed read_inverse<S>(BinaryReader&, const EssentialConditions&, const DofLayout&, const SetupLimits&);
+PALPATE_DENSE_SOLVER(DenseInverse<double>)
+PALPATE_DENSE_SOLVER(DenseInverse<float>)
+PALPATE_DENSE_SOLVER(DenseCholesky)
+PALPATE_DENSE_SOLVER(DenseConjugateGradient)
+PALPATE_WHOLE_INVERSE(double)
+PALPATE_WHOLE_INVERSE(float)
+#undef PALPATE_DENSE_SOLVER
+#undef PALPATE_WHOLE_INVERSE
+#endif
 
 }  // namespace detail
 

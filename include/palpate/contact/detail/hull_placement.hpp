@@ -256,4 +256,7 @@ inline void place_hull_beside(ContactTool& tool, const ContactSurface& surface) 
   }
 }
 
+/// What a ConvexTool gives its hull.
+inline constexpr HullPlacement hull_placement{&place_hull_beside, &first_touch};
+
 }}}  // namespace palpate::detail

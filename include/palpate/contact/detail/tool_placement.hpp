@@ -3,7 +3,7 @@
 
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/contact/detail/hull_placement.hpp>
+#include <palpate/contact/convex_hull.hpp>
 #include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>
@@ -87,13 +87,13 @@ void for_each_sphere(const ContactTool& tool, Look&& look) {
 
 /// Places the proxy where the tool does not touch the resting surface: at the position if it is free there, otherwise
 /// next to the closest point; a capsule is moved by the displacement that its deepest sphere needs, a few times, a
-/// convex tool as place_hull_beside. Forces are zero. No allocation.
+/// convex tool as place_hull_beside; its hull is that of a ConvexTool. Forces are zero. No allocation.
 inline void place_beside(ContactTool& tool, const ContactSurface& surface, const Vector3& position) noexcept {
   tool.force.setZero();
   tool.torque.setZero();
   tool.rotation = tool.target_rotation;
   tool.proxy = position;
-  if (tool.hull != nullptr) return place_hull_beside(tool, surface);
+  if (tool.hull != nullptr) return tool.hull->placement()->beside(tool, surface);
   const Vector3 axis = tool.axis();
   for (int round = 0; round < (tool.half_length > 0.0 ? 4 : 1); ++round) {
     Vector3 move = Vector3::Zero();
@@ -111,13 +111,13 @@ inline void place_beside(ContactTool& tool, const ContactSurface& surface, const
 }
 
 /// Moves and rotates the proxy from `from` towards the position until the tool first touches the resting surface from
-/// outside. Forces are zero. No allocation.
+/// outside. The hull of a convex tool is that of a ConvexTool. Forces are zero. No allocation.
 inline void sweep(ContactTool& tool, const ContactSurface& surface, const Vector3& from,
                   const Vector3& position) noexcept {
   const Vector3 path = position - from, axis = tool.axis(), turn = tool.target_rotation * tool.own_axis - axis;
   double part = 1.0;
   if (tool.hull != nullptr)
-    part = first_touch(tool, surface, from, position);
+    part = tool.hull->placement()->first_touch(tool, surface, from, position);
   else
     for_each_sphere(tool, [&](double s) {  // smaller, so that a touching sphere that moves away has no hit
       part = std::min(part, first_touch(surface, from + s * axis, path + s * turn, (1.0 - 1e-6) * tool.radius));

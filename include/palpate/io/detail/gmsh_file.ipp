@@ -1,9 +1,9 @@
-// Definitions of read_mesh.hpp: reads whole Gmsh files, their format and sections.
+// Definitions of read_msh.hpp: reads whole Gmsh files, their format and sections.
 #pragma once
 
 #include <palpate/io/detail/gmsh_msh2.hpp>
 #include <palpate/io/detail/gmsh_msh4.hpp>
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace io::gmsh {
 
@@ -29,9 +29,13 @@ PALPATE_COLD inline Format read_format(TextReader& in) {
   for (; in.line() == "$Comments"; in.need_line("$MeshFormat or $NOD"))
     while (in.line() != "$EndComments") in.need_line("$EndComments");
   if (in.line() == "$NOD") return {1, false, false};
-  if (in.line() != "$MeshFormat")
+  if (in.line() != "$MeshFormat") {
+    if (!in.name().ends_with(".msh"))
+      in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()),
+                "Call io::read_mesh (palpate/io.hpp): it reads other formats");
     in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()),
               {"Other programs call their files .msh too. Convert it: ", meshio_command(in.name())});
+  }
   in.need_line("a version number");
   const double version = in.real("a version number");
   const bool is2 = version >= 2.0 && version <= 2.2;

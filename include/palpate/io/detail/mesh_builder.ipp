@@ -1,10 +1,10 @@
-// Definitions of read_mesh.hpp: converts a parsed file to a mesh of one element type.
+// Definitions of read_msh.hpp: converts a parsed file to a mesh of one element type.
 #pragma once
 
 #include <palpate/io/detail/id_table.hpp>
 #include <palpate/io/detail/node_order.hpp>
 #include <palpate/io/detail/tag_sets.hpp>
-#include <palpate/io/read_mesh.hpp>
+#include <palpate/io/read_msh.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,18 +6,16 @@
 #include <palpate/linear/detail/node_graph.hpp>
 #include <palpate/model/setup_report.hpp>
 
-#include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 class BinaryReader;
+class CacheFile;
 class ElasticBody;
 namespace detail {
 
-class PreparedCache;
 class FreeStiffness;
 
 }  // namespace detail
@@ -50,15 +48,11 @@ struct SystemSource {
   /// Prepares the system and checks its accuracy; flags a loss of digits. With a `cache_file` the system is read from
   /// it, or computed and stored in it. Throws the errors of factorisation and checks; a cache that is invalid or cannot
   /// be written is reported and is not an error.
-  AnyStaticSystem prepare(const std::string& cache_file, SetupReport& report) const;
+  AnyStaticSystem prepare(const CacheFile& cache_file, SetupReport& report) const;
+  /// The same without a file.
+  AnyStaticSystem make(SetupReport& report) const;
 
  private:
-  AnyStaticSystem prepare_with(const std::string& cache_file, SetupReport& report) const;
-  /// Returns the system when the file contains it and a solve with it is right: a final check that does not depend on
-  /// hashes. The condition number is the one measured when the system was computed; measuring it again would cost as
-  /// much as reading the file.
-  std::optional<AnyStaticSystem> read(PreparedCache& cache, SetupReport& report) const;
-  AnyStaticSystem make(SetupReport& report) const;
   void estimate_accuracy(const FreeStiffness& free, AnyStaticSystem& system, SetupReport& report) const;
   /// Refuses a system whose softest motion is lost in rounding: a mechanism or near-mechanism that the geometric check
   /// does not find. Only checked when digits are lost.

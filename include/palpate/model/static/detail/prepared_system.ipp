@@ -5,105 +5,21 @@
 
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/linear/condition.hpp>
-#include <palpate/linear/detail/vector_kernels.hpp>
-#include <palpate/model/cache/detail/prepared_cache.hpp>
-#include <palpate/model/detail/elastic_body.hpp>
+#include <palpate/model/cache/cache_file.hpp>
 #include <palpate/model/detail/stage_timer.hpp>
+#include <palpate/model/static/detail/checking_solver.hpp>
 
-#include <algorithm>
-#include <exception>
-#include <limits>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// A system as a LinearSolver that solves on the threads of a set-up and reports progress before every solve. After a
-/// cancellation it only returns NaN, which ends an estimate; then `require_going_on` throws.
-class CheckingSolver {
- public:
-  CheckingSolver(AnyStaticSystem& system, const SetupLimits& limits) : system_(system), limits_(limits) {}
-
-  Index size() const noexcept { return system_.size(); }
-  SolveReport solve_into(const VectorX& b, VectorX& x) noexcept {
-    if (goes_on()) return system_.solve_into(b, x, limits_.threads);
-    fill(x, std::numeric_limits<double>::quiet_NaN());
-    return {false, 0, std::numeric_limits<double>::quiet_NaN()};
-  }
-  /// Throws what the report of progress has thrown.
-  void require_going_on() const {
-#if defined(PALPATE_HAS_EXCEPTIONS)
-    if (stopped_) std::rethrow_exception(stopped_);
-#endif
-  }
-
- private:
-  bool goes_on() noexcept {
-    constexpr double usual = 8.0;  // solves of all checks
-#if defined(PALPATE_HAS_EXCEPTIONS)
-    try {
-#endif
-      if (!stopped_) limits_.advance("checks", std::min(0.9, solves_++ / usual));
-#if defined(PALPATE_HAS_EXCEPTIONS)
-    } catch (...) {
-      stopped_ = std::current_exception();
-    }
-#endif
-    return !stopped_;
-  }
-
-  AnyStaticSystem& system_;
-  const SetupLimits& limits_;
-  std::exception_ptr stopped_;
-  int solves_ = 0;
-};
-
-PALPATE_INLINE AnyStaticSystem SystemSource::prepare(const std::string& cache_file, SetupReport& report) const {
+PALPATE_INLINE AnyStaticSystem SystemSource::prepare(const CacheFile& cache_file, SetupReport& report) const {
   if (!cache_file.empty()) {
-    if (recipe.read != nullptr) return prepare_with(cache_file, report);
-    report.cache.file = cache_file;
+    if (recipe.read != nullptr) return cache_file.prepare(*this, report);
+    report.cache.file = cache_file.name();
     report.cache.supported = false;
   }
   return make(report);
-}
-
-PALPATE_INLINE AnyStaticSystem SystemSource::prepare_with(const std::string& cache_file, SetupReport& report) const {
-  limits.advance("cache", 0.0);
-  const CacheKey key =
-      cache_key(body.key(), conditions, kept_nodes, *stiffness.matrix(), recipe.cache_name, recipe.scalar_bytes);
-  PreparedCache cache(cache_file, key, report.cache);
-  if (auto system = read(cache, report)) return std::move(*system);
-  AnyStaticSystem system = make(report);
-  limits.advance("cache", 0.5);
-  const StageTimer timer(report, "write cache");
-  cache.store([&](BinaryWriter& out) {
-    out.value(report.condition_estimate);
-    system.write(out);
-  });
-  if (report.cache.mismatch != CacheMismatch::none)
-    report.set(SetupFlag::cache_rejected, cache_file + " was not used because " + report.cache.why);
-  if (!report.cache.written)
-    report.set(SetupFlag::cache_unwritten, cache_file + " could not be written because " + report.cache.problem);
-  return system;
-}
-
-PALPATE_INLINE std::optional<AnyStaticSystem> SystemSource::read(PreparedCache& cache, SetupReport& report) const {
-  const StageTimer timer(report, "read cache");
-  if (!cache.open()) return std::nullopt;
-  double condition = 0.0;
-  cache.payload().value(condition);
-  std::optional<AnyStaticSystem> system(recipe.read(cache.payload(), *stiffness.matrix(), conditions, dofs, limits));
-  if (!cache.verify()) return std::nullopt;
-  CheckingSolver solver(*system, limits);
-  const double error = probe_error(FreeStiffness(stiffness.view(), conditions), solver);
-  solver.require_going_on();
-  if (!(error <= refused_probe_error)) {
-    cache.reject(CacheMismatch::answers, "a solve with a known answer is wrong");
-    return std::nullopt;
-  }
-  report.condition_estimate = condition;
-  report.probe_error = error;
-  judge_accuracy(recipe.iterative, report);
-  return system;
 }
 
 PALPATE_INLINE AnyStaticSystem SystemSource::make(SetupReport& report) const {

@@ -27,24 +27,24 @@ Uncondensed SolverTraits<WithAssembly<ConjugateGradient, AssemblyPolicy>>::make(
 template <std::floating_point S>
 Uncondensed SolverTraits<BasicSelectiveInverse<S>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
                                                          const DofLayout& layout, const SetupLimits& limits) {
-  return detail::make_inverse(kind, k, conditions, layout, limits);
+  return detail::make_inverse<S>(k, conditions, layout, limits);
 }
 template <std::floating_point S>
 Uncondensed SolverTraits<BasicSelectiveInverse<S>>::read(BinaryReader& in, const BlockMatrix&,
                                                          const EssentialConditions& conditions, const DofLayout& layout,
                                                          const SetupLimits& limits) {
-  return detail::read_inverse(kind, in, conditions, layout, limits);
+  return detail::read_inverse<S>(in, conditions, layout, limits);
 }
 template <class Inner>
 CondensedSystem SolverTraits<Condensed<Inner>>::make(const BlockMatrix& k, const EssentialConditions& conditions,
                                                      const DofLayout& layout, const SetupLimits& limits) {
-  return detail::make_condensed(detail::CondensedTraits<Inner>::kind, k, conditions, layout, limits);
+  return detail::make_condensed<typename detail::CondensedTraits<Inner>::Dense>(k, conditions, layout, limits);
 }
 template <class Inner>
 CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const BlockMatrix& k,
                                                      const EssentialConditions& conditions, const DofLayout& layout,
                                                      const SetupLimits& limits) {
-  return detail::read_condensed(detail::CondensedTraits<Inner>::kind, in, k, conditions, layout, limits);
+  return detail::read_condensed<typename detail::CondensedTraits<Inner>::Dense>(in, k, conditions, layout, limits);
 }
 
 /// A policy whose prepared system can be stored: `cache_name` is unique, the system has `write`, and `read` restores it

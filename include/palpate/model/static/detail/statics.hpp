@@ -6,6 +6,7 @@
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/mesh/scene.hpp>
+#include <palpate/model/cache/cache_file.hpp>
 #include <palpate/model/detail/elastic_body.hpp>
 #include <palpate/model/detail/stage_timer.hpp>
 #include <palpate/model/static/detail/prepared_system.hpp>
@@ -31,7 +32,7 @@ class Statics {
   /// not_positive_definite, ill_conditioned ...; cache problems never throw.
   Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
           const MakeStiffness& make_stiffness, const detail::SolverRecipe& recipe, const SetupLimits& limits,
-          const std::string& cache_file, SetupReport& report);
+          const CacheFile& cache_file, SetupReport& report);
   Statics(const Statics&) = delete;
   Statics& operator=(const Statics&) = delete;
 
@@ -91,7 +92,7 @@ class Statics {
 
 inline Statics::Statics(ElasticBody& body, const Scene& scene, const std::vector<NodeId>& kept_nodes,
                         const MakeStiffness& make_stiffness, const detail::SolverRecipe& recipe,
-                        const SetupLimits& limits, const std::string& cache_file, SetupReport& report)
+                        const SetupLimits& limits, const CacheFile& cache_file, SetupReport& report)
     : body_(&body), conditions_(body_->conditions(scene)) {
   body_->require_constrained(conditions_);
   {
