@@ -4,7 +4,7 @@
 #include "meshes.hpp"
 #include "statics.hpp"
 
-#include <palpate/post/detail/patch_recovery.hpp>
+#include <palpate/post/patch_recovery.hpp>
 
 namespace accuracy {
 

@@ -4,7 +4,7 @@
 #include "meshes.hpp"
 #include "statics.hpp"
 
-#include <palpate/post/detail/point_stress.hpp>
+#include <palpate/post/point_stress.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
 #include <palpate/quadrature/simplex.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/material/linear_elastic.hpp>
 

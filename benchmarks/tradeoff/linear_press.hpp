@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/condensation/static_systems.hpp>
 #include <palpate/linear/detail/indexed_vector.hpp>
 #include <palpate/linear/detail/node_graph.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>

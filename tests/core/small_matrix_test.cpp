@@ -1,4 +1,4 @@
-// The operators of core/detail/small_matrix.hpp against Eigen's own.
+// The operators of core/small_matrix.hpp against Eigen's own.
 #include <palpate/core/types.hpp>
 #include <palpate/testing/random.hpp>
 

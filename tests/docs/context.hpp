@@ -7,7 +7,7 @@
 
 #include <palpate/cut.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/soft.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/load_vector.hpp>
 
 #include "assembly/bodies.hpp"

@@ -1,5 +1,5 @@
 // Stress at points and recovered at nodes, against fields with known stress.
-#include <palpate/post/detail/patch_recovery.hpp>
+#include <palpate/post/patch_recovery.hpp>
 #include <palpate/post/stress.hpp>
 
 #include "../../benchmarks/accuracy/lame_sphere.hpp"

@@ -3,7 +3,7 @@
 
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/condensation/detail/schur.hpp>
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/detail/any_solver.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <palpate/contact/convex_hull.hpp>
 #include <palpate/core/detail/box.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 

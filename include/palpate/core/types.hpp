@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 
 #include <concepts>
 #include <limits>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/cut/cuttable_tissue.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>

@@ -11,7 +11,7 @@
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/slit_sides.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>

@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/quadrature.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/quadrature/simplex.hpp>

@@ -1,7 +1,7 @@
 // Iterative solver for symmetric positive definite operators, and for a stored dense matrix.
 #pragma once
 
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/detail/any_solver.hpp>
 #include <palpate/linear/detail/dense_kernels.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>

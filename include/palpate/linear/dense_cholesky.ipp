@@ -1,7 +1,7 @@
 // Definitions of dense_cholesky.hpp.
 #pragma once
 
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/detail/big_array.hpp>

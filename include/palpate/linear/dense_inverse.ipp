@@ -1,7 +1,7 @@
 // Definitions of dense_inverse.hpp.
 #pragma once
 
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <palpate/linear/detail/processor_kernels.hpp>
 #include <palpate/linear/detail/spd_inverse.hpp>

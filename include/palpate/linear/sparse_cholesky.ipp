@@ -1,7 +1,7 @@
 // Definitions of sparse_cholesky.hpp.
 #pragma once
 
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/linear/detail/front_block_sweeps.hpp>
 #include <palpate/linear/detail/parallel_fronts.hpp>

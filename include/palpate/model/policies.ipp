@@ -6,7 +6,7 @@
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/condensation/detail/schur.hpp>
 #include <palpate/condensation/static_systems.hpp>
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/linear/dense_cholesky.hpp>
 #include <palpate/linear/dense_inverse.hpp>

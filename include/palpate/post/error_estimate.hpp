@@ -8,8 +8,8 @@
 #include <palpate/core/types.hpp>
 #include <palpate/element/detail/serendipity.hpp>
 #include <palpate/local/geometry.hpp>
-#include <palpate/post/detail/patch_recovery.hpp>
-#include <palpate/post/detail/point_stress.hpp>
+#include <palpate/post/patch_recovery.hpp>
+#include <palpate/post/point_stress.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Stress for drawing: the volume mean of every element, averaged at the nodes. For accurate values at a node see
-// post/detail/patch_recovery.hpp.
+// post/patch_recovery.hpp.
 #pragma once
 
 #include <palpate/assembly/body.hpp>
@@ -8,7 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/core/voigt.hpp>
 #include <palpate/mesh/mesh.hpp>
-#include <palpate/post/detail/point_stress.hpp>
+#include <palpate/post/point_stress.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 

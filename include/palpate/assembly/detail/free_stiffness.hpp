@@ -3,10 +3,10 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/detail/any_stiffness.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/incomplete_cholesky.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/types.hpp>
 
 #include <Eigen/SparseCore>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/detail/incomplete_cholesky.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>

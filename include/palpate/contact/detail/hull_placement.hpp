@@ -5,7 +5,7 @@
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/contact/convex_hull.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/rigid_motion.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/core/detail/content_hash.hpp>
 #include <palpate/core/platform.hpp>
 

@@ -4,7 +4,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
@@ -14,7 +14,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/kept_dofs.hpp>
 #include <palpate/linear/condition.hpp>

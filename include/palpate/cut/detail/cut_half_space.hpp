@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/subfacet_compliance.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -7,7 +7,7 @@
 #include <palpate/assembly/smoothed_tetrahedra.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/element/wrappers.hpp>
 #include <palpate/integrator/detail/requirements.hpp>

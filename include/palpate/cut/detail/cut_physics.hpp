@@ -2,12 +2,12 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
-#include <palpate/core/detail/small_matrix.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/wrappers.hpp>

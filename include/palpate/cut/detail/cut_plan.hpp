@@ -7,7 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_base.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/element_changes.hpp>
 #include <palpate/cut/detail/kept_dofs.hpp>
 #include <palpate/cut/detail/topology_change.hpp>

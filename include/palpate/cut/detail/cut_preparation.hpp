@@ -2,14 +2,14 @@
 #pragma once
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>

@@ -10,7 +10,7 @@
 #include <palpate/cut/detail/cut_state.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
 #include <palpate/cut/detail/cut_system.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/resting_nodes.hpp>
 #include <palpate/cut/detail/swept_faces.hpp>

@@ -8,7 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_system.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 
 #include <atomic>
 #include <memory>

@@ -12,7 +12,7 @@
 #include <palpate/cut/detail/cut_preparation.hpp>
 #include <palpate/cut/detail/cut_surface.hpp>
 #include <palpate/cut/detail/cut_system.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/resting_nodes.hpp>
 #include <palpate/model/admission_report.hpp>

@@ -5,7 +5,7 @@
 #include <palpate/contact/detail/bvh.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>

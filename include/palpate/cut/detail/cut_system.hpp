@@ -13,7 +13,7 @@
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_plan.hpp>
 #include <palpate/cut/detail/cut_step.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/element_changes.hpp>
 #include <palpate/cut/detail/kept_dofs.hpp>
 #include <palpate/cut/detail/matrix_pool.hpp>

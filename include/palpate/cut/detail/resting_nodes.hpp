@@ -4,7 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
-#include <palpate/cut/detail/cut_topology.hpp>
+#include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 

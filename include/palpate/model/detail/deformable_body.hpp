@@ -5,7 +5,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/detail/elastic_forces.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/assembly/detail/viscous_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/projected_half_space.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/mesh/mesh_ref.hpp>

@@ -1,7 +1,7 @@
 // Static equilibrium at large deformation by Newton's method with load steps.
 #pragma once
 
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/integrator.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/rotation.hpp>
 #include <palpate/core/setup_options.hpp>
@@ -15,7 +15,7 @@
 #include <palpate/model/detail/deformable_body.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 #include <palpate/model/moving/detail/renewal_thread.hpp>
-#include <palpate/model/moving/detail/step_preconditioners.hpp>
+#include <palpate/model/moving/step_preconditioners.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 
 #include <array>

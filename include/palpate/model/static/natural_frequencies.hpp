@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/assembly/mass_matrix.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/core/config.hpp>
 #include <palpate/core/detail/atomic_file.hpp>
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/core/detail/content_hash.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/model/cache/cache_report.hpp>

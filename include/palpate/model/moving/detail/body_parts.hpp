@@ -1,7 +1,7 @@
 // Divides a body into a part near the touchable nodes and the rest.
 #pragma once
 
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/detail/corotated_tetrahedra.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
@@ -22,7 +22,7 @@
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/model/detail/deformable_body.hpp>
-#include <palpate/model/moving/detail/step_preconditioners.hpp>
+#include <palpate/model/moving/step_preconditioners.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Uses a factor of a body for the same body after its parts have rotated.
 #pragma once
 
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/model/detail/deformable_body.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/detail/energy_forces.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>

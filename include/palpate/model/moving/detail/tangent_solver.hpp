@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/block_matrix.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/free_stiffness.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>

@@ -3,9 +3,9 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/detail/any_stiffness.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/condensation/static_systems.hpp>
-#include <palpate/core/detail/binary_io.hpp>
+#include <palpate/core/binary_io.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/linear/detail/any_solver.hpp>
 #include <palpate/model/detail/element_body.hpp>

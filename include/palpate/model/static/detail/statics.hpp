@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/detail/any_stiffness.hpp>
-#include <palpate/assembly/detail/essential_conditions.hpp>
+#include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/concepts/linear_solver.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/mesh/scene.hpp>

@@ -1,7 +1,7 @@
 // Definitions of patch_recovery.hpp.
 #pragma once
 
-#include <palpate/post/detail/patch_recovery.hpp>
+#include <palpate/post/patch_recovery.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

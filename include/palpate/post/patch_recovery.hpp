@@ -10,7 +10,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/promote.hpp>
-#include <palpate/post/detail/point_stress.hpp>
+#include <palpate/post/point_stress.hpp>
 #include <palpate/quadrature/gauss_legendre.hpp>
 #include <palpate/quadrature/simplex.hpp>
 
@@ -293,5 +293,5 @@ inline Vector6 NodalStress::at(Index node) const noexcept {
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
-#include <palpate/post/detail/patch_recovery.ipp>
+#include <palpate/post/patch_recovery.ipp>
 #endif
