@@ -1,6 +1,7 @@
 // Supports, touchable part and path of the sphere for an unknown mesh.
 #pragma once
 
+#include <palpate/io.hpp>
 #include <palpate/mesh/diagnosis.hpp>
 #include <palpate/palpate.hpp>
 

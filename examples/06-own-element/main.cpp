@@ -1,6 +1,7 @@
 // Example 06: a user-defined element. Checks it with the law suite, then uses it for a beam that deflects under its
 // weight.
 #include <palpate/own_types.hpp>
+#include <palpate/elements.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/testing/element_laws.hpp>
 

@@ -17,8 +17,7 @@ using palpate::VectorX;
 /// a step is final when the next step begins: until then `correct` may change it.
 class MeteredMotion final : public palpate::TissueMotion {
  public:
-  MeteredMotion(std::unique_ptr<TissueMotion> motion, std::unique_ptr<palpate::detail::ElasticForces> elastic,
-                VectorX mass)
+  MeteredMotion(std::unique_ptr<TissueMotion> motion, std::unique_ptr<palpate::ElasticForces> elastic, VectorX mass)
       : motion_(std::move(motion)), elastic_(std::move(elastic)), mass_(std::move(mass)) {
     load_ = u_ = VectorX::Zero(mass_.size());
   }
@@ -52,7 +51,7 @@ class MeteredMotion final : public palpate::TissueMotion {
 
  private:
   std::unique_ptr<TissueMotion> motion_;
-  std::unique_ptr<palpate::detail::ElasticForces> elastic_;
+  std::unique_ptr<palpate::ElasticForces> elastic_;
   VectorX mass_, load_, u_;
   double kinetic_ = 0.0, work_ = 0.0;
 };

@@ -92,7 +92,7 @@ class CubeInTime {
                   .density = 0.0},
                  {{{m.at("g").template get<double>(), m.at("tau").template get<double>()}}},
                  law == "shear_only" ? palpate::Relaxation::deviatoric : palpate::Relaxation::whole_stress};
-    body_.emplace(palpate::detail::make_constrained_body(palpate::make_body(mesh_, material_), scene()));
+    body_.emplace(palpate::make_constrained_body(palpate::make_body(mesh_, material_), scene()));
     full_ = body_->conditions().prescribed;
   }
 
@@ -236,7 +236,7 @@ Course solve_bar_in_time(const palpate::Mesh<E>& mesh, const json& load_case) {
   for (palpate::Index i = 0; i < admitted.mesh.node_count(); ++i)
     if (admitted.mesh.position(i).x() > admitted.mesh.position(tip).x()) tip = i;
   palpate::ImplicitDynamics motion(
-      palpate::detail::make_deformable_body(palpate::make_body(std::move(admitted.mesh), material), mapped),
+      palpate::make_deformable_body(palpate::make_body(std::move(admitted.mesh), material), mapped),
       {.scheme = palpate::TimeScheme::newmark(), .mass = palpate::MassKind::consistent});
   Course course;
   course.header = "t,tip";

@@ -11,6 +11,7 @@
 #include <palpate/cut/cuttable_moving.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/soft.hpp>
+#include <palpate/tools.hpp>
 
 #include <palpate/core/executor.hpp>
 #include <palpate/device/chai3d.hpp>

@@ -3,9 +3,8 @@
 #include <palpate/palpate.hpp>
 
 #include <palpate/assembly/body.hpp>
-#include <palpate/element/hex8.hpp>
+#include <palpate/elements.hpp>
 #include <palpate/material/orthotropic.hpp>
-#include <palpate/mesh/generators_box.hpp>
 
 #include <cstdio>
 #include <typeinfo>

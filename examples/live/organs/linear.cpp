@@ -1,6 +1,7 @@
 // Linear elasticity: the smallest ticks. Tet4 locks near nu = 0.5, Smoothed<Tet4> and Tet10 do not.
 #include <palpate/mesh/promote.hpp>
 #include <palpate/model/static/measured_force_error.hpp>
+#include <palpate/elements.hpp>
 #include <palpate/palpate.hpp>
 
 #include "../core/organ_of.hpp"

@@ -83,4 +83,7 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
 
 }  // namespace detail
 
+// For programs: documented in docs/dynamics.md.
+using detail::resolve_essential;
+
 }}  // namespace palpate

@@ -45,4 +45,9 @@ class ClaimedTissue {
   TissueClaim::Taken taken_;
 };
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For tissues of your own (TissueModel).
+using detail::TissueClaim;
+
+}}  // namespace palpate

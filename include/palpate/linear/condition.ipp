@@ -5,8 +5,8 @@
 #include <palpate/linear/detail/vector_kernels.hpp>
 
 #include <cmath>
-#include <limits>
 #include <cstdint>
+#include <limits>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -48,7 +48,7 @@ PALPATE_INLINE double inverse_norm_estimate(SolverView solver) {
   return estimate;
 }
 
-/// Numbers from -1 to 1, the same in every call: splitmix64 (Steele, Lea and Flood 2014), which saves all programs the
+/// Numbers in [-1, 1), the same in every call: splitmix64 (Steele, Lea and Flood 2014), which saves all programs the
 /// header <random>.
 inline VectorX random_answer(Index n) {
   std::uint64_t state = 20250101;

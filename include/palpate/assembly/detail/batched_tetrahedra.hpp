@@ -23,7 +23,8 @@
 #include <cmath>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
 /// P grad N_a, Lanes<S, N> of elements simultaneously. Elements are grouped in blocks of 512 that are summed in the
@@ -134,4 +135,9 @@ class BatchedTetrahedra {
   double probe_length_ = 0.0;
 };
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For programs: documented in docs/dynamics.md.
+using detail::BatchedTetrahedra;
+
+}}  // namespace palpate

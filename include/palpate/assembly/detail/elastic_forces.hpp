@@ -8,7 +8,8 @@
 
 #include <utility>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 /// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or
 /// step for the whole body, so the cost of a virtual call is negligible, and code that uses it is compiled once for all
@@ -70,4 +71,10 @@ inline DeformationReport LinearForces::force(const VectorX& u, VectorX& f) const
   return report;
 }
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For programs: documented in docs/dynamics.md.
+using detail::ElasticForces;
+using detail::LinearForces;
+
+}}  // namespace palpate

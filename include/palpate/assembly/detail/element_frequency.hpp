@@ -14,7 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 /// Not a template: Eigen's solver takes seconds to compile for every size.
 double largest_symmetric_eigenvalue(const MatrixX& symmetric);
@@ -41,7 +42,12 @@ double element_frequency_bound(const Body<E>& body) {
   return largest;
 }
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For programs: documented in docs/dynamics.md.
+using detail::element_frequency_bound;
+
+}}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/assembly/detail/element_frequency.ipp>

@@ -19,7 +19,8 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
@@ -139,4 +140,11 @@ inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditi
   return sums.size() > 0 ? sums.maxCoeff() : 0.0;
 }
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For solvers of your own (SolverTraits::make).
+using detail::for_each_free_entry;
+using detail::free_matrix;
+using detail::SparseMatrix;
+
+}}  // namespace palpate

@@ -193,4 +193,7 @@ inline void ViscousForces::set_length(double dt) noexcept {
 
 }  // namespace detail
 
+// For motions of your own (SolverTraits::make_motion).
+using detail::ViscousBody;
+
 }}  // namespace palpate

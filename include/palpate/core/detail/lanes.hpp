@@ -11,7 +11,8 @@
 #include <iterator>
 #include <type_traits>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PALPATE_LANES_BY_LOOPS)
 
@@ -208,4 +209,9 @@ PALPATE_ALWAYS_INLINE Lanes<S, N> cube_root(const Lanes<S, N>& x) noexcept {
   return y;
 }
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For materials of your own (HyperelasticMaterial).
+using detail::Lanes;
+
+}}  // namespace palpate

@@ -30,11 +30,11 @@ PALPATE_COLD inline Format read_format(TextReader& in) {
     while (in.line() != "$EndComments") in.need_line("$EndComments");
   if (in.line() == "$NOD") return {1, false, false};
   if (in.line() != "$MeshFormat") {
-    if (!in.name().ends_with(".msh"))
-      in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()),
-                "Call io::read_mesh (palpate/io.hpp): it reads other formats");
+    const bool called_msh = in.name().ends_with(".msh") || in.name().ends_with(".MSH");
     in.refuse(SetupErrorKind::bad_file, "$MeshFormat or $NOD", in_quotes(in.line()),
-              {"Other programs call their files .msh too. Convert it: ", meshio_command(in.name())});
+              {called_msh ? "Other programs call their files .msh too. Convert it: "
+                          : "Other formats are read by io::read_mesh (palpate/io.hpp), or converted: ",
+               meshio_command(in.name())});
   }
   in.need_line("a version number");
   const double version = in.real("a version number");

@@ -18,29 +18,29 @@ inline Index find_part(std::vector<Index>& parent, Index e) noexcept {
   return e;
 }
 
-using Row = std::vector<double>;
+using MatrixRow = std::vector<double>;
 
-inline double dot(const Row& a, const Row& b) noexcept {
+inline double dot(const MatrixRow& a, const MatrixRow& b) noexcept {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
-inline void subtract(Row& from, double factor, const Row& row) noexcept {
+inline void subtract(MatrixRow& from, double factor, const MatrixRow& row) noexcept {
   for (std::size_t i = 0; i < from.size(); ++i) from[i] -= factor * row[i];
 }
 
 /// Orthonormal basis of the span of rows, by Gram-Schmidt with pivoting; a remainder of a row below `tolerance` is
 /// treated as zero. O(rank x rows x columns).
-inline std::vector<Row> row_space(std::vector<Row> rows, double tolerance) {
-  std::vector<Row> basis;
+inline std::vector<MatrixRow> row_space(std::vector<MatrixRow> rows, double tolerance) {
+  std::vector<MatrixRow> basis;
   while (!rows.empty()) {
-    const auto largest = std::ranges::max_element(rows, {}, [](const Row& r) { return dot(r, r); });
-    Row row = *largest;
+    const auto largest = std::ranges::max_element(rows, {}, [](const MatrixRow& r) { return dot(r, r); });
+    MatrixRow row = *largest;
     std::swap(*largest, rows.back());
     rows.pop_back();
-    for (const Row& b : basis) subtract(row, dot(b, row), b);
+    for (const MatrixRow& b : basis) subtract(row, dot(b, row), b);
     const double length = std::sqrt(dot(row, row));
     if (!(length > tolerance)) break;
     for (double& x : row) x /= length;
-    for (Row& r : rows) subtract(r, dot(row, r), row);
+    for (MatrixRow& r : rows) subtract(r, dot(row, r), row);
     basis.push_back(std::move(row));
   }
   return basis;
@@ -145,7 +145,7 @@ class JointedParts {
     if (unknowns > most_motions) return std::nullopt;
     double smallest = tolerance;
     for (const std::size_t p : cluster) smallest = std::max(smallest, parts_[p].frame.resolution);
-    const std::vector<Row> basis = row_space(joint_rows(cluster, unknowns), smallest);
+    const std::vector<MatrixRow> basis = row_space(joint_rows(cluster, unknowns), smallest);
     if (basis.size() == unknowns) return std::nullopt;
     for (const std::size_t p : cluster)
       if (const RigidMotions motions = motions_left(parts_[p], basis); !motions.empty())
@@ -154,15 +154,15 @@ class JointedParts {
   }
 
   /// Equations of the joints: at every joint the displacements of two parts are equal.
-  std::vector<Row> joint_rows(const std::vector<std::size_t>& cluster, std::size_t unknowns) const {
-    std::vector<Row> rows;
+  std::vector<MatrixRow> joint_rows(const std::vector<std::size_t>& cluster, std::size_t unknowns) const {
+    std::vector<MatrixRow> rows;
     for (const std::size_t p : cluster)
       for (const NodeId i : parts_[p].nodes) {
         const std::vector<std::size_t>& users = users_[static_cast<std::size_t>(i)];
         if (!is_free_joint(i) || users.front() == p) continue;
         for (int axis = 0; axis < 3; ++axis) {
           if ((constrained_[static_cast<std::size_t>(i)] >> axis & 1u) != 0) continue;
-          Row row(unknowns, 0.0);
+          MatrixRow row(unknowns, 0.0);
           add_displacement(parts_[users.front()], i, axis, 1.0, row);
           add_displacement(parts_[p], i, axis, -1.0, row);
           rows.push_back(std::move(row));
@@ -170,7 +170,7 @@ class JointedParts {
       }
     return rows;
   }
-  void add_displacement(const Part& part, NodeId node, int axis, double factor, Row& row) const {
+  void add_displacement(const Part& part, NodeId node, int axis, double factor, MatrixRow& row) const {
     const Vector3 x = (positions_[static_cast<std::size_t>(node)] - part.frame.centre) / part.frame.size;
     const Vector6 at = constraint_row(x, axis);
     for (std::size_t k = 0; k < part.motions.size(); ++k)
@@ -178,16 +178,16 @@ class JointedParts {
   }
 
   /// A part's motions in the complement of the joints' row space.
-  static RigidMotions motions_left(const Part& part, const std::vector<Row>& basis) {
+  static RigidMotions motions_left(const Part& part, const std::vector<MatrixRow>& basis) {
     const std::size_t n = part.motions.size();
-    std::vector<Row> projector(n, Row(n, 0.0));  // on the remaining motions, restricted to this part
+    std::vector<MatrixRow> projector(n, MatrixRow(n, 0.0));  // on the remaining motions, restricted to this part
     for (std::size_t i = 0; i < n; ++i) {
       projector[i][i] = 1.0;
-      for (const Row& b : basis)
+      for (const MatrixRow& b : basis)
         for (std::size_t j = 0; j < n; ++j) projector[i][j] -= b[part.first + i] * b[part.first + j];
     }
     RigidMotions left;
-    for (const Row& amounts : row_space(std::move(projector), tolerance)) {
+    for (const MatrixRow& amounts : row_space(std::move(projector), tolerance)) {
       Vector6 motion = Vector6::Zero();
       for (std::size_t k = 0; k < n; ++k) motion += amounts[k] * part.motions[k];
       left.push_back(motion);

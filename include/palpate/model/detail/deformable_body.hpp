@@ -29,7 +29,8 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+namespace detail {
 
 /// Forces, conditions, loads and mass of a body, independent of its elements and materials. Vectors have 3 entries per
 /// node.
@@ -169,4 +170,11 @@ DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, co
   return made;
 }
 
-}}}  // namespace palpate::detail
+}  // namespace detail
+
+// For programs: documented in docs/soft.md, for Equilibrium and ImplicitDynamics.
+using detail::DeformableBody;
+using detail::make_constrained_body;
+using detail::make_deformable_body;
+
+}}  // namespace palpate

@@ -39,20 +39,20 @@ PALPATE_INLINE void BoundaryNodes::list_triangles(const MeshRef& mesh) {
 }
 
 PALPATE_INLINE void BoundaryNodes::find_sharp_edges() {
-  struct Side {
+  struct EdgeSide {
     std::array<NodeId, 2> ends;
     int triangle;
   };
-  std::vector<Side> sides;
+  std::vector<EdgeSide> sides;
   sides.reserve(3 * triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
       const NodeId a = triangles_[t][i], b = triangles_[t][(i + 1) % 3];
       sides.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(t)});
     }
-  std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(s.ends, s.triangle); });
+  std::ranges::sort(sides, {}, [](const EdgeSide& s) { return std::pair(s.ends, s.triangle); });
   for (auto first = sides.begin(); first != sides.end();) {
-    const auto last = std::find_if(first, sides.end(), [&](const Side& s) { return s.ends != first->ends; });
+    const auto last = std::find_if(first, sides.end(), [&](const EdgeSide& s) { return s.ends != first->ends; });
     const bool smooth =
         last - first == 2 && triangle_normal(first->triangle).dot(triangle_normal(first[1].triangle)) >= sharp_cosine;
     if (!smooth)

@@ -65,4 +65,7 @@ inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& 
 
 }  // namespace detail
 
+// For motions of your own (TissueMotion::set_springs).
+using detail::most_springs;
+
 }}  // namespace palpate
