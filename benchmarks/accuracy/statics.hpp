@@ -36,7 +36,7 @@ VectorX solve_free(const BlockMatrix& k, const EssentialConditions& conditions, 
 template <Element E>
 Solved solve_static(const Body<E>& body, const Scene& scene, const VectorX& more_load = {}) {
   const auto boundary = extract_boundary<E>(body.mesh);
-  const EssentialConditions conditions = detail::resolve_essential(body.mesh, boundary, scene);
+  const EssentialConditions conditions = resolve_essential(body.mesh, boundary, scene);
   VectorX load = detail::applied_load(body, boundary, scene) + detail::initial_strain_load(body);
   if (more_load.size() > 0) load += more_load;
   if (!scene.gravity().isZero(0.0)) {

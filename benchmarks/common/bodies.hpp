@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
@@ -101,15 +101,15 @@ inline SupportedBody organ_like(int layers, double edge) {
 
 /// Equations of a constrained body, and the layout of their dofs for the solver.
 struct System {
-  detail::SparseMatrix lower;
+  SparseMatrix lower;
   DofLayout layout;          ///< without kept dofs
   std::vector<Index> patch;  ///< free dofs of the touched nodes
 
   explicit System(const SupportedBody& supported) {
     Scene scene;
     scene.fix(supported.constrained);
-    const auto conditions = detail::resolve_essential(supported.mesh, extract_boundary<Tet4>(supported.mesh), scene);
-    lower = detail::free_matrix(assemble_stiffness<Tet4>(supported.body(), {}), conditions);
+    const auto conditions = resolve_essential(supported.mesh, extract_boundary<Tet4>(supported.mesh), scene);
+    lower = free_matrix(assemble_stiffness<Tet4>(supported.body(), {}), conditions);
     layout.positions = supported.mesh.positions;
     for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
     for (NodeId node : supported.touched)

@@ -39,7 +39,7 @@ struct Block {
         boundary(extract_boundary<Tet4>(mesh)),
         physics(make_body(mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0}),
                 boundary, scene),
-        topology(mesh, detail::resolve_essential(mesh, boundary, scene).constrained),
+        topology(mesh, resolve_essential(mesh, boundary, scene).constrained),
         surface(topology, boundary, scene),
         system(topology, physics, kept(kept_above)) {}
 
@@ -177,9 +177,9 @@ void report(bench::RowFile& rows, const std::string& what, const Cost& c, double
 /// Only the factorisation by Eigen, without compliance.
 void eigen_refactor(bench::RowFile& rows, const Block& b, int n, double rendered) {
   const Body<Tet4> body = make_body(b.mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.45});
-  const EssentialConditions conditions = detail::resolve_essential(b.mesh, b.boundary, b.scene);
-  const detail::SparseMatrix lower = detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
-  Eigen::SimplicialLLT<detail::SparseMatrix, Eigen::Lower> llt;
+  const EssentialConditions conditions = resolve_essential(b.mesh, b.boundary, b.scene);
+  const SparseMatrix lower = free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt;
   const double seconds = bench::seconds_of([&] { llt.compute(lower); });
   const VectorX x = VectorX::Ones(lower.rows()), load = lower.selfadjointView<Eigen::Lower>() * x;
   const double wrong = (llt.solve(load) - x).cwiseAbs().maxCoeff();

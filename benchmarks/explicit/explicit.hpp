@@ -1,8 +1,8 @@
 // The measurements of the program.
 #pragma once
 
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/explicit_schemes.hpp>
@@ -29,10 +29,11 @@ inline std::vector<Index> free_dofs(const Mesh<Tet4>& mesh, double above) {
 }
 
 template <class Scheme, class S = double>
-ExplicitMotion<detail::BatchedTetrahedra<NeoHookean, S>, Scheme> motion_of(
-    const HyperelasticBody<Tet4, NeoHookean>& body, double free_above, const ExplicitOptions& options = {}) {
-  return {detail::BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free_dofs(body.rest.mesh, free_above),
-          detail::element_frequency_bound(body.rest), options};
+ExplicitMotion<BatchedTetrahedra<NeoHookean, S>, Scheme> motion_of(const HyperelasticBody<Tet4, NeoHookean>& body,
+                                                                   double free_above,
+                                                                   const ExplicitOptions& options = {}) {
+  return {BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free_dofs(body.rest.mesh, free_above),
+          element_frequency_bound(body.rest), options};
 }
 
 /// Force per element: batches compared with a plain loop over elements.

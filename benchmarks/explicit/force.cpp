@@ -46,7 +46,7 @@ std::string nanoseconds(double seconds) {
 template <class S>
 void measure(bench::RowFile& rows, const HyperelasticBody<Tet4, NeoHookean>& body, const PlainLoop& plain,
              const VectorX& u, const char* scalar, double most) {
-  detail::BatchedTetrahedra<NeoHookean, S> batched(body);
+  BatchedTetrahedra<NeoHookean, S> batched(body);
   VectorX exact(u.size()), f(u.size());
   const auto elements = static_cast<double>(body.rest.mesh.element_count());
   const auto [ours, theirs] = bench::medians_in_turns([&] { batched.force(u, f); }, [&] { plain.force(u, exact); },

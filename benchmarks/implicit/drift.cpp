@@ -41,8 +41,8 @@ Momenta momenta(const ImplicitDynamics& d, bool small_strain) {
 }
 
 /// Free flight with an initial swirl; without rotation at small strain, where the block only oscillates.
-void measure(bench::RowFile& rows, detail::DeformableBody body, const TimeScheme& scheme, const char* name,
-             bool small_strain, bool keeps_energy, int steps) {
+void measure(bench::RowFile& rows, DeformableBody body, const TimeScheme& scheme, const char* name, bool small_strain,
+             bool keeps_energy, int steps) {
   ImplicitDynamics d(std::move(body), {.scheme = scheme, .newton = {.tolerance = 1e-13}});
   VectorX v(d.displacement().size());
   for (Index i = 0; i < v.size() / 3; ++i) {
@@ -102,9 +102,9 @@ void measure(bench::RowFile& rows, detail::DeformableBody body, const TimeScheme
 
 void measure_implicit_drift(bench::RowFile& rows, int steps) {
   const auto mesh = [] { return bench::standard_block(2).mesh; };
-  const auto linear = [&] { return detail::make_deformable_body(make_body(mesh(), soft.small_strain()), Scene()); };
+  const auto linear = [&] { return make_deformable_body(make_body(mesh(), soft.small_strain()), Scene()); };
   const auto large = [&] {
-    return detail::make_deformable_body(make_hyperelastic_body(mesh(), std::vector<NeoHookean>{soft}), Scene());
+    return make_deformable_body(make_hyperelastic_body(mesh(), std::vector<NeoHookean>{soft}), Scene());
   };
   measure(rows, linear(), TimeScheme::newmark(), "Newmark, small strain", true, true, steps);
   measure(rows, linear(), TimeScheme::implicit_euler(), "implicit Euler, small strain", true, false, steps);
@@ -183,7 +183,7 @@ void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
                                                            options);
   measure_scrambles(rows, corotated, "co-rotated, implicit Euler without a factor", runs);
   ImplicitDynamics solved(
-      detail::make_deformable_body(make_hyperelastic_body(block.mesh, std::vector<NeoHookean>{soft}), scene),
+      make_deformable_body(make_hyperelastic_body(block.mesh, std::vector<NeoHookean>{soft}), scene),
       {.mass_damping = 5.0});
   measure_scrambles(rows, solved, "neo-Hookean, implicit Euler", std::min(runs, 200));
   QuasiNewtonBlock smoothed(block.mesh, scene);

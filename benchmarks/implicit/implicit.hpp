@@ -75,7 +75,7 @@ class PlainEigenStep {
   std::vector<Element> elements_;
   EssentialConditions conditions_;
   VectorX mass_, load_, u_, v_;
-  detail::SparseMatrix a_;
+  SparseMatrix a_;
   std::vector<Index> diagonal_;
   double tolerance_;
   long iterations_ = 0;

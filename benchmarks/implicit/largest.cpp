@@ -1,8 +1,8 @@
 // The largest block that moves in real time at 1 kHz, by material and integrator, and the error of its motion.
 #include "implicit.hpp"
 
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/explicit_schemes.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
@@ -50,11 +50,10 @@ Scene scene_of(int n) {
 template <class Force, class Scheme, class M>
 ReleasedBlock explicit_motion(int n) {
   const auto body = body_of<M>(n);
-  const auto conditions =
-      detail::resolve_essential(body.rest.mesh, extract_boundary<Tet4>(body.rest.mesh), scene_of(n));
+  const auto conditions = resolve_essential(body.rest.mesh, extract_boundary<Tet4>(body.rest.mesh), scene_of(n));
   const VectorX mass = lumped_mass(body.rest);
   auto motion = std::make_shared<ExplicitMotion<Force, Scheme>>(Force(body), mass, conditions.free_dofs,
-                                                                detail::element_frequency_bound(body.rest));
+                                                                element_frequency_bound(body.rest));
   for (Index i = 0; i < mass.size(); ++i) motion->load()[3 * i + 2] = -9.81 * mass[i];
   return {[motion] {
             const int parts = static_cast<int>(std::ceil(tick / (0.9 * motion->limit())));
@@ -70,7 +69,7 @@ ReleasedBlock explicit_motion(int n) {
 template <class M>
 ReleasedBlock newton_motion(int n, TimeScheme scheme, int iterations, double step = tick) {
   auto motion = std::make_shared<ImplicitDynamics>(
-      detail::make_deformable_body(body_of<M>(n), scene_of(n)),
+      make_deformable_body(body_of<M>(n), scene_of(n)),
       DynamicsParameters{.scheme = scheme, .newton = {.maximum_iterations = iterations, .tolerance = 1e-9}});
   return {[motion, step] {
             bool good = true;
@@ -142,11 +141,11 @@ void measure(bench::RowFile& rows, const char* what, const Maker& make, const Ve
 void measure_largest(bench::RowFile& rows) {
   const VectorX neo = solved<NeoHookean>(), corotated = solved<Corotated>();
   measure(rows, "neo-Hookean, central difference, float",
-          explicit_motion<detail::BatchedTetrahedra<NeoHookean, float>, CentralDifference, NeoHookean>, neo, 0.02);
+          explicit_motion<BatchedTetrahedra<NeoHookean, float>, CentralDifference, NeoHookean>, neo, 0.02);
   measure(rows, "neo-Hookean, central difference, double",
-          explicit_motion<detail::BatchedTetrahedra<NeoHookean>, CentralDifference, NeoHookean>, neo, 0.02);
+          explicit_motion<BatchedTetrahedra<NeoHookean>, CentralDifference, NeoHookean>, neo, 0.02);
   measure(rows, "neo-Hookean, semi-implicit Euler, double",
-          explicit_motion<detail::BatchedTetrahedra<NeoHookean>, SemiImplicitEuler, NeoHookean>, neo, 0.1);
+          explicit_motion<BatchedTetrahedra<NeoHookean>, SemiImplicitEuler, NeoHookean>, neo, 0.1);
   measure(
       rows, "neo-Hookean, implicit Euler, two Newton iterations, factor",
       [](int n) { return newton_motion<NeoHookean>(n, TimeScheme::implicit_euler(), 2); }, neo, 0.6);
@@ -154,13 +153,13 @@ void measure_largest(bench::RowFile& rows) {
       rows, "neo-Hookean, Newmark, two Newton iterations, factor",
       [](int n) { return newton_motion<NeoHookean>(n, TimeScheme::newmark(), 2); }, neo, 0.02);
   measure(rows, "St. Venant-Kirchhoff, central difference, double",
-          explicit_motion<detail::BatchedTetrahedra<StVenantKirchhoff>, CentralDifference, StVenantKirchhoff>,
+          explicit_motion<BatchedTetrahedra<StVenantKirchhoff>, CentralDifference, StVenantKirchhoff>,
           solved<StVenantKirchhoff>(), 0.02);
   measure(rows, "Mooney-Rivlin, central difference, double",
-          explicit_motion<detail::BatchedTetrahedra<MooneyRivlin>, CentralDifference, MooneyRivlin>,
-          solved<MooneyRivlin>(), 0.02);
+          explicit_motion<BatchedTetrahedra<MooneyRivlin>, CentralDifference, MooneyRivlin>, solved<MooneyRivlin>(),
+          0.02);
   measure(rows, "co-rotated, central difference, double",
-          explicit_motion<detail::BatchedTetrahedra<Corotated>, CentralDifference, Corotated>, corotated, 0.02);
+          explicit_motion<BatchedTetrahedra<Corotated>, CentralDifference, Corotated>, corotated, 0.02);
   const auto euler = TimeScheme::implicit_euler(), newmark = TimeScheme::newmark();
   measure(
       rows, "co-rotated, implicit Euler, conjugate gradients, float",

@@ -7,7 +7,7 @@ namespace implicit_path {
 
 PlainEigenStep::PlainEigenStep(const Pressing& pressing, double tolerance) : tolerance_(tolerance) {
   const Mesh<Tet4>& mesh = pressing.body.rest.mesh;
-  conditions_ = detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), pressing.scene);
+  conditions_ = resolve_essential(mesh, extract_boundary<Tet4>(mesh), pressing.scene);
   const VectorX nodal = lumped_mass(pressing.body.rest);
   mass_ = nodal.replicate(1, 3).transpose().reshaped();
   load_ = VectorX::Zero(mass_.size());
@@ -112,7 +112,7 @@ void PlainEigenStep::step(double h, const VectorX& prescribed) {
         mass_[conditions_.free_dofs[static_cast<std::size_t>(i)]] / (h * h);
   VectorX b(a_.rows());
   conditions_.gather(residual, b);
-  Eigen::ConjugateGradient<detail::SparseMatrix, Eigen::Lower | Eigen::Upper> solver;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver;
   solver.setTolerance(tolerance_);
   solver.compute(a_);
   const VectorX x = solver.solve(b);

@@ -21,8 +21,7 @@ struct Comparison {
       : pressing(p),
         h(step),
         force(p.body),
-        solved(detail::make_deformable_body(p.body, p.scene),
-               {.newton = {.maximum_iterations = 60, .tolerance = 1e-10}}),
+        solved(make_deformable_body(p.body, p.scene), {.newton = {.maximum_iterations = 60, .tolerance = 1e-10}}),
         norm(p.body, p.scene) {}
 
   double length(const VectorX& x) {

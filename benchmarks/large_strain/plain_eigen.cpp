@@ -156,9 +156,9 @@ class NewtonBlock : public Method {
   std::vector<int> dof_;  // first free dof of every node, -1 for prescribed ones
   std::vector<decltype(detail::constant_geometry<Tet4>(std::declval<Mesh<Tet4>>(), 0))> geometry_;
   VectorX mass_, x_, v_, predicted_;
-  detail::SparseMatrix k_;
+  SparseMatrix k_;
   std::vector<Index> place_, diagonal_;
-  Eigen::SimplicialLDLT<detail::SparseMatrix> solver_;
+  Eigen::SimplicialLDLT<SparseMatrix> solver_;
   double scale_ = 0.0;
 };
 

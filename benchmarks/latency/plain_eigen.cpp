@@ -1,5 +1,5 @@
 // A tick without this library, on the same block: a solve, or a product with an inverse.
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/linear/dense_inverse.hpp>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
@@ -16,7 +16,7 @@ using palpate::VectorX;
 
 /// Stiffness of the free dofs, inverse on the kept ones, and a load on one touchable node.
 struct Problem {
-  palpate::detail::SparseMatrix k;
+  palpate::SparseMatrix k;
   MatrixX inverse;
   Eigen::MatrixXf inverse_float;
   std::vector<palpate::Index> kept;
@@ -28,12 +28,12 @@ struct Problem {
     const auto& model = s.model();
     palpate::Scene scene;
     scene.fix("z0");
-    const auto conditions = palpate::detail::resolve_essential(model.mesh(), model.boundary(), scene);
-    k = palpate::detail::free_matrix(palpate::assemble_stiffness<palpate::Tet4>(model.body(), {}), conditions);
+    const auto conditions = palpate::resolve_essential(model.mesh(), model.boundary(), scene);
+    k = palpate::free_matrix(palpate::assemble_stiffness<palpate::Tet4>(model.body(), {}), conditions);
     for (palpate::NodeId node : model.touchable_nodes())
       for (int c = 0; c < 3; ++c)
         kept.push_back(conditions.free_index[static_cast<std::size_t>(3 * palpate::Index{node} + c)]);
-    const Eigen::SimplicialLDLT<palpate::detail::SparseMatrix> ldlt(k);
+    const Eigen::SimplicialLDLT<palpate::SparseMatrix> ldlt(k);
     MatrixX unit = MatrixX::Zero(k.rows(), size()), response;
     for (palpate::Index i = 0; i < size(); ++i) unit(kept[static_cast<std::size_t>(i)], i) = 1.0;
     response = ldlt.solve(unit);
@@ -71,7 +71,7 @@ void finish(benchmark::State& state, double error, double allowed, double bytes)
 }
 
 void sparse_solve(benchmark::State& state) {
-  const Eigen::SimplicialLDLT<palpate::detail::SparseMatrix> ldlt(problem().k);
+  const Eigen::SimplicialLDLT<palpate::SparseMatrix> ldlt(problem().k);
   VectorX u(problem().k.rows());
   for (auto _ : state) benchmark::DoNotOptimize((u = ldlt.solve(problem().load)).data());
   finish(state, problem().error_of_all(u), 1e-8, 0.0);
@@ -79,7 +79,7 @@ void sparse_solve(benchmark::State& state) {
 BENCHMARK(sparse_solve)->Name("eigen/SimplicialLDLT_solve")->Unit(benchmark::kMicrosecond);
 
 void sparse_cg(benchmark::State& state) {
-  Eigen::ConjugateGradient<palpate::detail::SparseMatrix, Eigen::Lower> cg(problem().k);
+  Eigen::ConjugateGradient<palpate::SparseMatrix, Eigen::Lower> cg(problem().k);
   cg.setTolerance(1e-8);
   VectorX u(problem().k.rows());
   for (auto _ : state) benchmark::DoNotOptimize((u = cg.solve(problem().load)).data());

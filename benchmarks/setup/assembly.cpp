@@ -8,7 +8,7 @@ namespace {
 using namespace palpate;
 
 /// The standard approach without this library: 144 triplets per element.
-detail::SparseMatrix from_triplets(const Body<Tet4>& body) {
+SparseMatrix from_triplets(const Body<Tet4>& body) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(144 * body.mesh.elements.size());
   for (Index e = 0; e < body.mesh.element_count(); ++e) {
@@ -18,7 +18,7 @@ detail::SparseMatrix from_triplets(const Body<Tet4>& body) {
       for (int j = 0; j < 12; ++j) entries.emplace_back(dof(i), dof(j), k(i, j));
   }
   const Index size = 3 * body.mesh.node_count();
-  detail::SparseMatrix matrix(size, size);
+  SparseMatrix matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
@@ -29,7 +29,7 @@ void measure_assembly(Session& session) {
   for (const int n : {10, 16, 24}) {
     const Body<Tet4> body = bench::standard_block(n).body();
     BlockMatrix blocks;
-    detail::SparseMatrix matrix;
+    SparseMatrix matrix;
     const auto [ours, theirs] =
         bench::medians_in_turns([&] { blocks = assemble_stiffness<Tet4>(body, {}); },
                                 [&] { matrix = from_triplets(body); }, {.seconds = 2.0, .least = 3, .most = 15});

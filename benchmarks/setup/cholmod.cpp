@@ -53,7 +53,7 @@ void Cholmod::set_threads(int count) noexcept {
   use_threads(count);
 }
 
-Cholmod::Cholmod(const palpate::detail::SparseMatrix& lower) : implementation_(std::make_unique<Implementation>()) {
+Cholmod::Cholmod(const palpate::SparseMatrix& lower) : implementation_(std::make_unique<Implementation>()) {
   static_assert(sizeof(SuiteSparse_long) == sizeof(palpate::Index));
   use_threads(1);
   cholmod_common& c = implementation_->common;
@@ -122,7 +122,7 @@ std::string Cholmod::blas() {
   return "";
 }
 void Cholmod::set_threads(int) noexcept {}
-Cholmod::Cholmod(const palpate::detail::SparseMatrix&) {}
+Cholmod::Cholmod(const palpate::SparseMatrix&) {}
 Cholmod::~Cholmod() = default;
 double Cholmod::analysis_seconds() const noexcept {
   return unknown;

@@ -1,7 +1,7 @@
 // CHOLMOD's supernodal factorisation as a baseline, where it is installed. The library itself does not use it.
 #pragma once
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ class Cholmod {
   static void set_threads(int count) noexcept;
 
   /// Analyses the symmetric matrix with this lower triangle. `lower` must outlive this object.
-  explicit Cholmod(const palpate::detail::SparseMatrix& lower);
+  explicit Cholmod(const palpate::SparseMatrix& lower);
   ~Cholmod();
 
   double analysis_seconds() const noexcept;

@@ -73,7 +73,7 @@ void add_cholmod_row(Session& session, const Times& t, const std::string& where,
 
 /// Analysis and numeric factorisation together, for both solvers. Runs once, as it takes seconds.
 void add_simplicial_row(Session& session, const bench::System& system, const Times& t, int n) {
-  std::optional<Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower>> ldlt;
+  std::optional<Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>> ldlt;
   const double theirs = bench::seconds_of([&] { ldlt.emplace(system.lower); });
   const VectorX b = bench::random_matrix(system.lower.rows(), 1), x = ldlt->solve(b);
   session.rows.add({.target = "b",

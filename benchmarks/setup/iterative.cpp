@@ -23,7 +23,7 @@ void measure_block(Session& session, int n) {
   const bench::SupportedBody body = bench::standard_block(n);
   Scene scene;
   scene.fix(body.constrained);
-  const auto conditions = detail::resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), scene);
+  const auto conditions = resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), scene);
   const BlockMatrix k = assemble_stiffness<Tet4>(body.body(), {});
   const VectorX b = bench::random_matrix(conditions.free_count(), 1);
   VectorX x(b.size()), product(b.size());

@@ -141,7 +141,7 @@ void describe_growth(Session& session, const bench::SupportedBody& body, const d
 }
 
 void compare_with_eigen(Session& session, const bench::System& system, double two_threads, const std::string& where) {
-  using Solver = Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower>;
+  using Solver = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>;
   constexpr Index soon = 15'000, long_run = 70'000;  // dofs: seconds and a minute
   const std::string what = "two threads / Eigen's SimplicialLDLT, one thread" + where;
   if (system.lower.rows() > (session.long_run ? long_run : soon))

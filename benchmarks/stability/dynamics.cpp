@@ -1,7 +1,7 @@
 // The sweep over schemes, time steps and materials of dynamics.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -26,10 +26,10 @@ DynamicProblem block(int cells, int steps, double young, double nu) {
 
 /// Stable time step 2 / omega_max [s] of the block at rest, by a dense eigenvalue problem.
 double stable_step(const DynamicProblem& p) {
-  const detail::DeformableBody body = detail::make_deformable_body(neo_hookean(p), p.scene);
+  const DeformableBody body = make_deformable_body(neo_hookean(p), p.scene);
   BlockMatrix k = detail::make_stiffness(body.pattern, {});
   body.elastic->tangent(VectorX::Zero(body.load.size()), k);
-  MatrixX dense = MatrixX(detail::free_matrix(k, body.conditions));
+  MatrixX dense = MatrixX(free_matrix(k, body.conditions));
   for (Index i = 0; i < dense.rows(); ++i)
     for (Index j = 0; j <= i; ++j) {
       const auto mass = [&](Index f) {

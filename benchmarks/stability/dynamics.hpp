@@ -5,7 +5,7 @@
 
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/generators.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 
 namespace maps {
 
@@ -32,8 +32,8 @@ struct Moved {
 /// below.
 class EnergyWatch {
  public:
-  EnergyWatch(detail::DeformableBody body) : body_(std::move(body)) {}
-  const detail::DeformableBody& body() const noexcept { return body_; }
+  EnergyWatch(DeformableBody body) : body_(std::move(body)) {}
+  const DeformableBody& body() const noexcept { return body_; }
 
   /// False when the motion is unstable.
   bool holds(const VectorX& u, const VectorX& v) {
@@ -49,7 +49,7 @@ class EnergyWatch {
   double error() const noexcept { return error_; }
 
  private:
-  detail::DeformableBody body_;
+  DeformableBody body_;
   double most_work_ = 0.0, error_ = 0.0;
 };
 

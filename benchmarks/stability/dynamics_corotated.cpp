@@ -10,7 +10,7 @@ using Motion = detail::CorotatedMotion<LinearElastic, float>;
 
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
   Motion motion(corotational(problem), problem.scene, {.scheme = scheme});
-  return run(problem, EnergyWatch(detail::make_deformable_body(corotational(problem), problem.scene)),
+  return run(problem, EnergyWatch(make_deformable_body(corotational(problem), problem.scene)),
              ReportedSteps{motion, dt, [](const detail::CorotatedStep& report) { return report.solve.converged; }});
 }
 

@@ -1,8 +1,8 @@
 // Explicit schemes of the library.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/explicit_schemes.hpp>
 
@@ -11,7 +11,7 @@ namespace {
 
 template <class SchemeOf>
 struct ExplicitStep {
-  ExplicitMotion<detail::BatchedTetrahedra<NeoHookean>, SchemeOf>& motion;
+  ExplicitMotion<BatchedTetrahedra<NeoHookean>, SchemeOf>& motion;
   double dt;
 
   bool operator()(std::string& remark) {
@@ -26,10 +26,10 @@ struct ExplicitStep {
 template <class SchemeOf>
 Moved move(const DynamicProblem& problem, double dt) {
   const auto body = neo_hookean(problem);
-  EnergyWatch watch(detail::make_deformable_body(neo_hookean(problem), problem.scene));
-  ExplicitMotion<detail::BatchedTetrahedra<NeoHookean>, SchemeOf> motion(
-      detail::BatchedTetrahedra<NeoHookean>(body), watch.body().lumped, watch.body().conditions.free_dofs,
-      detail::element_frequency_bound(body.rest));
+  EnergyWatch watch(make_deformable_body(neo_hookean(problem), problem.scene));
+  ExplicitMotion<BatchedTetrahedra<NeoHookean>, SchemeOf> motion(BatchedTetrahedra<NeoHookean>(body),
+                                                                 watch.body().lumped, watch.body().conditions.free_dofs,
+                                                                 element_frequency_bound(body.rest));
   motion.load() = watch.body().load;
   return run(problem, std::move(watch), ExplicitStep<SchemeOf>{motion, dt});
 }

@@ -7,8 +7,8 @@ namespace maps {
 namespace {
 
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
-  ImplicitDynamics motion(detail::make_deformable_body(neo_hookean(problem), problem.scene), {.scheme = scheme});
-  return run(problem, EnergyWatch(detail::make_deformable_body(neo_hookean(problem), problem.scene)),
+  ImplicitDynamics motion(make_deformable_body(neo_hookean(problem), problem.scene), {.scheme = scheme});
+  return run(problem, EnergyWatch(make_deformable_body(neo_hookean(problem), problem.scene)),
              ReportedSteps{motion, dt, [](const StepReport& report) { return report.newton.converged; }});
 }
 

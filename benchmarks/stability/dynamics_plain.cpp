@@ -1,7 +1,7 @@
 // The same schemes as in a textbook: no step limit, no line search, no energy check; only Eigen's info() is checked.
 #include "dynamics_schemes.hpp"
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/integrator/time_scheme.hpp>
 
 #include <Eigen/SparseCholesky>
@@ -10,11 +10,11 @@ namespace maps {
 namespace {
 
 struct State {
-  detail::DeformableBody body;
+  DeformableBody body;
   VectorX u, v, a, f;
   double dt;
 
-  State(detail::DeformableBody given, double step)
+  State(DeformableBody given, double step)
       : body(std::move(given)), u(VectorX::Zero(body.load.size())), v(u), a(u), f(u), dt(step) {
     for (Index dof : body.conditions.free_dofs) a[dof] = body.load[dof] / body.lumped[dof / 3];
   }
@@ -23,7 +23,7 @@ struct State {
 
 /// Updates velocity, then position; with half a velocity step at the start it is the central difference scheme.
 struct ExplicitEuler : State {
-  ExplicitEuler(detail::DeformableBody given, double step, double share_of_first)
+  ExplicitEuler(DeformableBody given, double step, double share_of_first)
       : State(std::move(given), step), first(share_of_first) {}
   double first;
   bool operator()(std::string&) {
@@ -39,7 +39,7 @@ struct ExplicitEuler : State {
 
 /// One linearisation per step, of implicit Euler (Baraff and Witkin 1998) or of Newmark's rule.
 struct OneSolve : State {
-  OneSolve(detail::DeformableBody given, double step, const TimeScheme& scheme)
+  OneSolve(DeformableBody given, double step, const TimeScheme& scheme)
       : State(std::move(given), step), rule(scheme, u.size()), k(detail::make_stiffness(body.pattern, {})) {}
   detail::ImplicitStep rule;
   BlockMatrix k;
@@ -58,8 +58,8 @@ struct OneSolve : State {
       push[dof] = body.load[dof] - f[dof] +
                   rule.acceleration_per_displacement() * body.lumped[dof / 3] * (coasted[dof] - u[dof]);
     body.conditions.gather(push, right);
-    const detail::SparseMatrix lower = detail::free_matrix(k, body.conditions);
-    const Eigen::SimplicialLDLT<detail::SparseMatrix> factor(lower);
+    const SparseMatrix lower = free_matrix(k, body.conditions);
+    const Eigen::SimplicialLDLT<SparseMatrix> factor(lower);
     if (factor.info() != Eigen::Success) {
       remark = "info() is not Success";
       return false;
@@ -73,20 +73,20 @@ struct OneSolve : State {
 };
 
 Moved central(const DynamicProblem& p, double dt) {
-  return run(p, EnergyWatch(detail::make_deformable_body(neo_hookean(p), p.scene)),
-             ExplicitEuler(detail::make_deformable_body(neo_hookean(p), p.scene), dt, 0.5));
+  return run(p, EnergyWatch(make_deformable_body(neo_hookean(p), p.scene)),
+             ExplicitEuler(make_deformable_body(neo_hookean(p), p.scene), dt, 0.5));
 }
 Moved semi_implicit(const DynamicProblem& p, double dt) {
-  return run(p, EnergyWatch(detail::make_deformable_body(neo_hookean(p), p.scene)),
-             ExplicitEuler(detail::make_deformable_body(neo_hookean(p), p.scene), dt, 1.0));
+  return run(p, EnergyWatch(make_deformable_body(neo_hookean(p), p.scene)),
+             ExplicitEuler(make_deformable_body(neo_hookean(p), p.scene), dt, 1.0));
 }
 Moved one_solve_euler(const DynamicProblem& p, double dt) {
-  return run(p, EnergyWatch(detail::make_deformable_body(neo_hookean(p), p.scene)),
-             OneSolve(detail::make_deformable_body(neo_hookean(p), p.scene), dt, TimeScheme::implicit_euler()));
+  return run(p, EnergyWatch(make_deformable_body(neo_hookean(p), p.scene)),
+             OneSolve(make_deformable_body(neo_hookean(p), p.scene), dt, TimeScheme::implicit_euler()));
 }
 Moved one_solve_newmark(const DynamicProblem& p, double dt) {
-  return run(p, EnergyWatch(detail::make_deformable_body(neo_hookean(p), p.scene)),
-             OneSolve(detail::make_deformable_body(neo_hookean(p), p.scene), dt, TimeScheme::newmark()));
+  return run(p, EnergyWatch(make_deformable_body(neo_hookean(p), p.scene)),
+             OneSolve(make_deformable_body(neo_hookean(p), p.scene), dt, TimeScheme::newmark()));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Neo-Hookean tissue in explicit steps; the spheres act by penalty forces, as there is no servo for explicit motion.
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/explicit_schemes.hpp>
@@ -17,8 +17,8 @@ class ExplicitContender : public Contender {
   ExplicitContender(const Bench& bench, const std::string& mesh)
       : bench_(bench),
         body_(make_hyperelastic_body(bench.mesh(mesh), large_strain_materials<NeoHookean>(bench.scene.materials))),
-        conditions_(detail::resolve_essential(body_.rest.mesh, extract_boundary<Tet4>(body_.rest.mesh),
-                                              bench.scene.scene(near_group))),
+        conditions_(
+            resolve_essential(body_.rest.mesh, extract_boundary<Tet4>(body_.rest.mesh), bench.scene.scene(near_group))),
         mass_(lumped_mass(body_.rest)),
         motion_(make(rest_damping)),
         nodes_(body_.rest.mesh.find_group(near_group)->nodes),
@@ -80,7 +80,7 @@ class ExplicitContender : public Contender {
     ExplicitOptions options;
     options.damping = damping;
     return ExplicitMotion<Forces, Scheme>(Forces(body_), mass_, conditions_.free_dofs,
-                                          detail::element_frequency_bound(body_.rest), options);
+                                          element_frequency_bound(body_.rest), options);
   }
   /// Pushes every node out of the spheres by a penalty with half of the largest stable stiffness of a step. Uses the
   /// predicted position after the step, as the load of a step acts at its end. Delayed forces would add energy.
@@ -131,10 +131,10 @@ void add(const Bench& bench, std::vector<Entry>& entries, const std::string& mes
 }  // namespace
 
 void add_explicit(const Bench& bench, std::vector<Entry>& entries) {
-  add<detail::BatchedTetrahedra<NeoHookean>, CentralDifference>(
-      bench, entries, "given", "Tet4", "BatchedTetrahedra<NeoHookean>", "CentralDifference", "double");
+  add<BatchedTetrahedra<NeoHookean>, CentralDifference>(bench, entries, "given", "Tet4",
+                                                        "BatchedTetrahedra<NeoHookean>", "CentralDifference", "double");
   for (const std::string& mesh : meshes_for_node_contact(bench))
-    add<detail::BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
+    add<BatchedTetrahedra<NeoHookean, float>, CentralDifference>(
         bench, entries, mesh, "Tet4", "BatchedTetrahedra<NeoHookean, float>", "CentralDifference", "float");
 }
 

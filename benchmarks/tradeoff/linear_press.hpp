@@ -45,7 +45,7 @@ class LinearPress {
   LinearPress(const PressScene& scene, const Mesh<E>& mesh)
       : scene_(scene),
         mesh_(mesh),
-        conditions_(detail::resolve_essential(mesh, extract_boundary<E>(mesh), scene.scene(near_group))),
+        conditions_(resolve_essential(mesh, extract_boundary<E>(mesh), scene.scene(near_group))),
         stiffness_(assemble_stiffness<E>(make_body(mesh, scene.materials), {})),
         load_(conditions_.free_count()),
         answer_(conditions_.free_count()) {

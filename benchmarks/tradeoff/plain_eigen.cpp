@@ -1,7 +1,7 @@
 // A straightforward implementation with Eigen: linear tetrahedra on the given mesh, solved in every tick; and the same
 // at a lower rate, with forces interpolated for the device.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
@@ -12,8 +12,8 @@
 namespace tradeoff {
 namespace {
 
-using Ldlt = Eigen::SimplicialLDLT<detail::SparseMatrix>;
-using Gradients = Eigen::ConjugateGradient<detail::SparseMatrix, Eigen::Lower | Eigen::Upper>;
+using Ldlt = Eigen::SimplicialLDLT<SparseMatrix>;
+using Gradients = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper>;
 
 /// Nodes are kept outside the spheres along the normals of the last tick: one solve per node, and a small contact
 /// problem by projected Gauss-Seidel.
@@ -21,9 +21,9 @@ template <class Solver>
 class EveryTick : public Contender {
  public:
   EveryTick(const Bench& bench, const Mesh<Tet4>& mesh) : bench_(bench), mesh_(mesh) {
-    conditions_ = detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), bench.scene.scene(near_group));
-    const detail::SparseMatrix lower =
-        detail::free_matrix(assemble_stiffness<Tet4>(make_body(mesh, bench.scene.materials), {}), conditions_);
+    conditions_ = resolve_essential(mesh, extract_boundary<Tet4>(mesh), bench.scene.scene(near_group));
+    const SparseMatrix lower =
+        free_matrix(assemble_stiffness<Tet4>(make_body(mesh, bench.scene.materials), {}), conditions_);
     stiffness_ = lower.selfadjointView<Eigen::Lower>();
     if constexpr (std::same_as<Solver, Gradients>) solver_.setTolerance(1e-4);
     solver_.compute(stiffness_);
@@ -111,7 +111,7 @@ class EveryTick : public Contender {
   const Bench& bench_;
   const Mesh<Tet4>& mesh_;
   EssentialConditions conditions_;
-  detail::SparseMatrix stiffness_;
+  SparseMatrix stiffness_;
   Solver solver_;
   std::vector<NodeId> nodes_;
   std::vector<VectorX> columns_;

@@ -10,10 +10,10 @@ namespace tradeoff {
 using namespace palpate;
 
 /// The forces of a body and of spheres that push its nodes out: energy k/2 depth^2 for every node inside a sphere.
-class PressedForces : public detail::ElasticForces {
+class PressedForces : public ElasticForces {
  public:
   /// `nodes` can be pressed; `stiffness` is the contact stiffness of a node [N/m].
-  PressedForces(std::unique_ptr<detail::ElasticForces> body, std::vector<NodeId> nodes, std::vector<Vector3> positions,
+  PressedForces(std::unique_ptr<ElasticForces> body, std::vector<NodeId> nodes, std::vector<Vector3> positions,
                 double radius, double stiffness)
       : body_(std::move(body)),
         nodes_(std::move(nodes)),
@@ -38,7 +38,7 @@ class PressedForces : public detail::ElasticForces {
     for_each_pressed(u, [&](std::size_t, NodeId, double depth, const Vector3&) { largest = std::max(largest, depth); });
     return largest;
   }
-  const detail::ElasticForces& body() const noexcept { return *body_; }
+  const ElasticForces& body() const noexcept { return *body_; }
 
   Index size() const noexcept override { return body_->size(); }
   double energy(const VectorX& u) const noexcept override {
@@ -74,7 +74,7 @@ class PressedForces : public detail::ElasticForces {
       }
   }
 
-  std::unique_ptr<detail::ElasticForces> body_;
+  std::unique_ptr<ElasticForces> body_;
   std::vector<NodeId> nodes_;
   std::vector<Vector3> positions_, centres_;
   double radius_, stiffness_, share_ = 1.0;
@@ -83,7 +83,7 @@ class PressedForces : public detail::ElasticForces {
 /// A body in equilibrium with spheres pressed into it.
 class PressedEquilibrium {
  public:
-  PressedEquilibrium(detail::DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness)
+  PressedEquilibrium(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness)
       : body_(press(std::move(body), std::move(nodes), radius, stiffness, pressed_)) {}
 
   /// Finds the equilibrium for new centres, starting from the present state. Throws not_converged.
@@ -116,8 +116,8 @@ class PressedEquilibrium {
   int iterations = 0;
 
  private:
-  static detail::DeformableBody press(detail::DeformableBody body, std::vector<NodeId> nodes, double radius,
-                                      double stiffness, PressedForces*& pressed) {
+  static DeformableBody press(DeformableBody body, std::vector<NodeId> nodes, double radius, double stiffness,
+                              PressedForces*& pressed) {
     auto forces =
         std::make_unique<PressedForces>(std::move(body.elastic), std::move(nodes), body.positions, radius, stiffness);
     pressed = forces.get();

@@ -35,7 +35,7 @@ std::vector<double> depths(const PressScene& scene) {
 }
 
 /// Fully converged equilibria at every depth, by Newton's method.
-std::vector<Pressed> press(const PressScene& scene, detail::DeformableBody body, const std::vector<NodeId>& nodes) {
+std::vector<Pressed> press(const PressScene& scene, DeformableBody body, const std::vector<NodeId>& nodes) {
   PressedEquilibrium equilibrium(std::move(body), nodes, scene.radius, contact_stiffness(scene));
   std::vector<Pressed> all;
   for (const double depth : depths(scene)) {
@@ -63,10 +63,10 @@ std::vector<Pressed> press_linear(const PressScene& scene, const Mesh<E>& mesh) 
 
 template <class E>
 std::vector<Pressed> press_large_strain(const PressScene& scene, const Mesh<E>& mesh) {
-  return press(scene,
-               detail::make_constrained_body(make_hyperelastic_body(mesh, large_strain(scene.materials)),
-                                             scene.scene(near_group)),
-               mesh.find_group(near_group)->nodes);
+  return press(
+      scene,
+      make_constrained_body(make_hyperelastic_body(mesh, large_strain(scene.materials)), scene.scene(near_group)),
+      mesh.find_group(near_group)->nodes);
 }
 
 Reference reference_of(const PressScene& scene, const std::vector<Pressed>& all) {
@@ -154,11 +154,10 @@ Stiffening measure_stiffening(const PressScene& scene) {
   other.spheres = {sphere_along_normal(scene.mesh, scene.mesh.position(node), scene.radius)};
   const double k = contact_stiffness(scene);
   PressedEquilibrium real(
-      detail::make_constrained_body(make_hyperelastic_body(scene.mesh, large_strain(scene.materials)),
-                                    scene.scene(near_group)),
+      make_constrained_body(make_hyperelastic_body(scene.mesh, large_strain(scene.materials)), scene.scene(near_group)),
       wide, scene.radius, k),
-      linear(detail::make_deformable_body(make_body(scene.mesh, scene.materials), scene.scene(near_group)), wide,
-             scene.radius, k);
+      linear(make_deformable_body(make_body(scene.mesh, scene.materials), scene.scene(near_group)), wide, scene.radius,
+             k);
   Stiffening s;
   for (const double depth : depths(other)) {
     real.move_to(other.centres(depth));

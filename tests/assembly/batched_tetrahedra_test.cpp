@@ -1,5 +1,5 @@
 // The batched force of tetrahedra equals that of the plain loop.
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/material/mooney_rivlin.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -47,7 +47,7 @@ double difference(const VectorX& f, const VectorX& exact) {
 template <class S, class M>
 void compare(const HyperelasticBody<Tet4, M>& body, const VectorX& u, double tolerance) {
   const LargeStrain<Tet4, M> plain(body);
-  detail::BatchedTetrahedra<M, S> batched(body);
+  BatchedTetrahedra<M, S> batched(body);
   VectorX exact(u.size()), f = VectorX::Constant(u.size(), 7.0);
   const DeformationReport wanted = plain.force(u, exact), got = batched.force(u, f);
   CHECK(difference(f, exact) <= tolerance);
@@ -98,7 +98,7 @@ TEST_CASE("batches do not depend on the numbering of the mesh", "[assembly][batc
       shuffled.rest.mesh.elements[e][a] = to[static_cast<std::size_t>(mesh.elements[from][a])];
   }
   compare<double>(shuffled, moved, 1e-13);
-  detail::BatchedTetrahedra<NeoHookean> a(body), b(shuffled);
+  BatchedTetrahedra<NeoHookean> a(body), b(shuffled);
   VectorX fa(u.size()), fb(u.size()), back(u.size());
   a.force(u, fa);
   b.force(moved, fb);
@@ -110,7 +110,7 @@ TEST_CASE("batches do not depend on the numbering of the mesh", "[assembly][batc
 TEST_CASE("blocks can be computed in any order with the same result to the last bit", "[assembly][batched]") {
   const auto body = block<NeoHookean>({12, 10, 8});
   const VectorX u = random_displacement(3 * body.rest.mesh.node_count(), 0.001);
-  detail::BatchedTetrahedra<NeoHookean> batched(body);
+  BatchedTetrahedra<NeoHookean> batched(body);
   REQUIRE(batched.block_count() > 4);
   VectorX forward(u.size()), backward(u.size());
   const DeformationReport a = batched.force(u, forward);
@@ -133,8 +133,8 @@ TEST_CASE("batches report inverted, flat and non-finite elements", "[assembly][b
 
   VectorX f(dofs), flat = VectorX::Zero(dofs);
   for (Index i = 0; i < dofs / 3; ++i) flat[3 * i + 2] = -body.rest.mesh.position(i).z();
-  detail::BatchedTetrahedra<NeoHookean> batched(body);
-  detail::BatchedTetrahedra<StVenantKirchhoff> batched_strict(strict);
+  BatchedTetrahedra<NeoHookean> batched(body);
+  BatchedTetrahedra<StVenantKirchhoff> batched_strict(strict);
   CHECK(batched.force(wild, f).inverted > 0);
   const DeformationReport pressed = batched.force(flat, f);
   CHECK(std::abs(pressed.smallest_volume_ratio) <= 1e-12);
@@ -156,7 +156,7 @@ TEST_CASE("single precision keeps the strain of a body that has moved far", "[as
   VectorX u = random_displacement(3 * body.rest.mesh.node_count(), 0.001);
   for (Index i = 0; i < u.size(); i += 3) u.segment<3>(i) += Vector3(10.0, -20.0, 5.0);
   const LargeStrain<Tet4, NeoHookean> plain(body);
-  detail::BatchedTetrahedra<NeoHookean, float> batched(body);
+  BatchedTetrahedra<NeoHookean, float> batched(body);
   VectorX exact(u.size()), f(u.size());
   plain.force(u, exact);
   batched.force(u, f);
@@ -166,8 +166,8 @@ TEST_CASE("single precision keeps the strain of a body that has moved far", "[as
 TEST_CASE("invalid meshes and materials are refused (batched)", "[assembly][batched]") {
   auto body = block<NeoHookean>({2, 2, 2});
   body.materials[1].poisson_ratio = 0.5;
-  CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, detail::BatchedTetrahedra<NeoHookean>{body});
+  CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, BatchedTetrahedra<NeoHookean>{body});
   body.materials[1].poisson_ratio = 0.4;
   std::swap(body.rest.mesh.elements[7][0], body.rest.mesh.elements[7][1]);
-  CHECK_REFUSED(SetupErrorKind::inverted_element, detail::BatchedTetrahedra<NeoHookean>{body});
+  CHECK_REFUSED(SetupErrorKind::inverted_element, BatchedTetrahedra<NeoHookean>{body});
 }

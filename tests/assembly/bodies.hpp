@@ -2,7 +2,7 @@
 
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/generators.hpp>
 #include <palpate/testing/random.hpp>
@@ -42,7 +42,7 @@ inline Mesh<Tet4> jittered(Mesh<Tet4> mesh, double amount, const Vector3& size) 
 /// Conditions of a scene on a whole body.
 template <Element E>
 EssentialConditions conditions_of(const Mesh<E>& mesh, const Scene& scene) {
-  return detail::resolve_essential(mesh, extract_boundary<E>(mesh), scene);
+  return resolve_essential(mesh, extract_boundary<E>(mesh), scene);
 }
 
 }  // namespace test

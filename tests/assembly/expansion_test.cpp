@@ -19,7 +19,7 @@ VectorX solve(Body<E>& body, const Scene& scene) {
   body.initial_strain = detail::initial_strains_by_region(body.mesh, scene);
   VectorX load(conditions.free_count()), answer(load.size()), u(conditions.dof_count());
   conditions.gather(detail::initial_strain_load(body), load);
-  SparseCholesky(detail::free_matrix(assemble_stiffness<E>(body, {}), conditions), {}).solve_into(load, answer);
+  SparseCholesky(free_matrix(assemble_stiffness<E>(body, {}), conditions), {}).solve_into(load, answer);
   conditions.scatter(answer, u);
   return u;
 }

@@ -1,5 +1,5 @@
 // Fibre directions of the mesh at large strain: every element has its own.
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/element/hex8.hpp>
 #include <palpate/material/fibre_reinforced.hpp>
@@ -101,10 +101,10 @@ TEST_CASE("mesh fibres override the material's own; equal ones give the same res
 TEST_CASE("unsupported and invalid fibres are refused", "[assembly][large_strain][fibres][extreme]") {
   Mesh<Tet4> mesh = block_of_fibres<Tet4>(false);
   const auto body = make_hyperelastic_body(mesh, std::vector<FibredGel>{fibred_gel});
-  CHECK_REFUSED(SetupErrorKind::unsupported, detail::BatchedTetrahedra<FibredGel>{body});
+  CHECK_REFUSED(SetupErrorKind::unsupported, BatchedTetrahedra<FibredGel>{body});
   // a material without a direction ignores fibres
-  CHECK(detail::BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base}))
-            .size() == 3 * mesh.node_count());
+  CHECK(BatchedTetrahedra<NeoHookean>(make_hyperelastic_body(mesh, std::vector<NeoHookean>{fibred_gel.base})).size() ==
+        3 * mesh.node_count());
   mesh.fibres[3] *= 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_argument, pulled_along(mesh));
   mesh.fibres.pop_back();

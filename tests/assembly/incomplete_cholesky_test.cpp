@@ -1,5 +1,5 @@
 // The incomplete factorisation as a preconditioner of the free stiffness.
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/linear/conjugate_gradient.hpp>
 #include <palpate/testing/allocation_counter.hpp>
 

@@ -27,12 +27,12 @@ double tip_deflection(const Mesh<E>& mesh, double nu) {
   const Scene scene = Scene().fix("x0").traction("x1", {0.0, 0.0, -1e-3});
   const Body<E> body = body_of(mesh, {{1.0, nu, 1.0}});
   const auto boundary = extract_boundary<E>(mesh);
-  const EssentialConditions conditions = detail::resolve_essential(mesh, boundary, scene);
+  const EssentialConditions conditions = resolve_essential(mesh, boundary, scene);
   const VectorX load = detail::applied_load(body, boundary, scene);
   VectorX free(conditions.free_count());
   conditions.gather(load, free);
   const BlockMatrix k = assemble_stiffness<E>(body, {});
-  const Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower> solver(detail::free_matrix(k, conditions));
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver(free_matrix(k, conditions));
   REQUIRE(solver.info() == Eigen::Success);
   return free.dot(solver.solve(free)) / 1e-3;  // mean over the end, weighted like the load
 }

@@ -118,7 +118,7 @@ TEST_CASE("the mass of the free dofs is part of the full mass matrix", "[assembl
   scene.prescribe("x0", {0.0, std::nullopt, 0.0});
   const EssentialConditions conditions = conditions_of(body.mesh, scene);
   const detail::MassMatrix m = assemble_mass(body);
-  const detail::SparseMatrix lower = detail::free_matrix(m, conditions);
+  const SparseMatrix lower = free_matrix(m, conditions);
   VectorX free(conditions.free_count()), full(m.size()), moved(m.size()), expected(free.size());
   for (Index i = 0; i < free.size(); ++i) free[i] = std::cos(static_cast<double>(i));
   conditions.scatter(free, full);

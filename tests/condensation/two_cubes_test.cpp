@@ -20,13 +20,13 @@ namespace {
 struct Problem {
   Body<Tet4> body;
   EssentialConditions conditions;
-  detail::SparseMatrix lower;
+  SparseMatrix lower;
   std::vector<Index> kept;
 
   Problem(Mesh<Tet4> mesh, const LinearElastic& m, const Scene& scene, const std::vector<NodeId>& kept_nodes)
       : body(body_of(std::move(mesh), {m})),
         conditions(conditions_of(body.mesh, scene)),
-        lower(detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions)) {
+        lower(free_matrix(assemble_stiffness<Tet4>(body, {}), conditions)) {
     for (NodeId node : kept_nodes)
       for (int c = 0; c < 3; ++c)
         if (const Index i = conditions.free_index[static_cast<std::size_t>(3 * node + c)]; i >= 0) kept.push_back(i);
@@ -151,7 +151,7 @@ TEST_CASE("a condensed part that is not constrained is refused", "[condensation]
   Problem p = cubes();
   // Once the fixed nodes are free as well, the rest is attached to kept node 8 at one point only.
   const EssentialConditions none = conditions_of(p.body.mesh, Scene());
-  const detail::SparseMatrix free = detail::free_matrix(assemble_stiffness<Tet4>(p.body, {}), none);
+  const SparseMatrix free = free_matrix(assemble_stiffness<Tet4>(p.body, {}), none);
   const std::vector<Index> kept{24, 25, 26};
   CHECK_REFUSED(SetupErrorKind::not_positive_definite, detail::condense(free, kept, {}));
   // Keeping three nodes moves the rigid motions into the condensed stiffness.

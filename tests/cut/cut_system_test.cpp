@@ -20,7 +20,7 @@ struct CutBlock {
   CutBlock(const Mesh<E>& mesh, const Scene& scene, const std::vector<NodeId>& kept)
       : physics(make_body(mesh, LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0}),
                 extract_boundary<E>(mesh), scene),
-        topology(mesh, detail::resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained),
+        topology(mesh, resolve_essential(mesh, extract_boundary<E>(mesh), scene).constrained),
         system(topology, physics, kept) {}
 
   /// Cuts, and folds from time to time.
@@ -207,7 +207,7 @@ TEST_CASE("a column cut to half its width is twice as soft", "[cut]") {
   const Scene scene = Scene().fix("z0").traction("z1", {0.0, 0.0, 10.0});
   CutPhysics<Tet4> physics(make_body(mesh, LinearElastic{.youngs_modulus = 1e4, .poisson_ratio = 0.0, .density = 0.0}),
                            extract_boundary<Tet4>(mesh), scene);
-  CutTopology<Tet4> topology(mesh, detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), scene).constrained);
+  CutTopology<Tet4> topology(mesh, resolve_essential(mesh, extract_boundary<Tet4>(mesh), scene).constrained);
   const NodeId tip = mesh.find_group("z1")->nodes[0];
   detail::CutSystem<Tet4> system(topology, physics, {tip});
   CHECK(std::abs(system.displacement()[3 * Index{tip} + 2] - 10.0 * 0.1 / 1e4) < 1e-12);

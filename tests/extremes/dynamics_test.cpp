@@ -26,9 +26,9 @@ constexpr double jelly_side = 0.1;
 Mesh<Tet4> jelly_mesh(int cells = 2) {
   return box_tet4({jelly_side, jelly_side, jelly_side}, {cells, cells, cells});
 }
-detail::DeformableBody jelly_body(const Scene& scene, bool small_strain = false) {
-  if (small_strain) return detail::make_deformable_body(make_body(jelly_mesh(), jelly.small_strain()), scene);
-  return detail::make_deformable_body(make_hyperelastic_body(jelly_mesh(), std::vector{jelly}), scene);
+DeformableBody jelly_body(const Scene& scene, bool small_strain = false) {
+  if (small_strain) return make_deformable_body(make_body(jelly_mesh(), jelly.small_strain()), scene);
+  return make_deformable_body(make_hyperelastic_body(jelly_mesh(), std::vector{jelly}), scene);
 }
 struct MotionSums {
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
@@ -54,8 +54,8 @@ VectorX random_velocity(const ImplicitDynamics& d, double size) {
 TEST_CASE("a viscoelastic body accepts any time step", "[extreme][E1]") {
   const Viscoelastic<NeoHookean, 1> material{jelly, {{{0.5, 0.1}}}};
   for (const double h : {1e-9, 1e-6, 1e-3, 0.1, 1.0, 100.0}) {
-    ImplicitDynamics d(detail::make_deformable_body(make_hyperelastic_body(jelly_mesh(), std::vector{material}),
-                                                    Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(jelly_mesh(), std::vector{material}),
+                                            Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
                        {});
     for (int k = 0; k < 8; ++k) CHECK(d.step(h).taken);
     CHECK(d.displacement().allFinite());
@@ -192,11 +192,10 @@ TEST_CASE("a motion with loads that are not finite keeps its state and reports a
 TEST_CASE("artificial energy is reported, and nothing else", "[extreme][E6]") {
   const auto run = [](const TimeScheme& scheme, double young, double nu, double h) {
     const NeoHookean material{young, nu, 1000.0};
-    ImplicitDynamics d(
-        detail::make_deformable_body(
-            make_hyperelastic_body(box_tet4({0.1, 0.1, 0.1}, {2, 2, 2}, BoxSplit::six), std::vector{material}),
-            Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
-        {.scheme = scheme});
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(box_tet4({0.1, 0.1, 0.1}, {2, 2, 2}, BoxSplit::six),
+                                                                   std::vector{material}),
+                                            Scene().fix("z0").gravity({9.81, 0.0, 0.0})),
+                       {.scheme = scheme});
     double most_work = 0.0, most_energy = 0.0;
     int reported = 0;
     for (int k = 0; k < 100; ++k) {

@@ -99,14 +99,14 @@ TEST_CASE("explicit steps that need too many stable substeps are refused", "[hap
 TEST_CASE("a step of a whole number of stable ones is taken, also when the limit gets shorter on the way",
           "[haptic][explicit]") {
   // The limit is estimated from below, again every few stable steps: it gets shorter by a little while it settles.
-  using Force = detail::BatchedTetrahedra<NeoHookean>;
+  using Force = BatchedTetrahedra<NeoHookean>;
   const auto body = make_hyperelastic_body<Tet4, NeoHookean>(cushion(), std::vector<NeoHookean>{gel});
   const EssentialConditions conditions =
-      detail::resolve_essential(body.rest.mesh, extract_boundary<Tet4>(body.rest.mesh), cushion_scene());
+      resolve_essential(body.rest.mesh, extract_boundary<Tet4>(body.rest.mesh), cushion_scene());
   const VectorX lumped = lumped_mass(body.rest), rest = VectorX::Zero(3 * lumped.size());
   VectorX weight = rest;
   for (Index i = 0; i < lumped.size(); ++i) weight[3 * i + 2] = -9.81 * lumped[i];
-  const double bound = detail::element_frequency_bound(body.rest);
+  const double bound = element_frequency_bound(body.rest);
   ExplicitMotion<Force, CentralDifference> stable(Force(body), lumped, conditions.free_dofs, bound);
   stable.set(rest, rest);
   const double step = (1.0 - 1e-12) * 40.0 * stable.limit();

@@ -296,9 +296,8 @@ TEST_CASE("forces that are not finite are dropped and flagged", "[haptic][soft][
 TEST_CASE("the compliance is that of the settled body", "[haptic][soft]") {
   const Scene squeezed = Scene().prescribe("x0", {0.006, 0.0, 0.0}).prescribe("x1", {-0.006, 0.0, 0.0}).touch("z1");
   Soft<NeoHookean> tissue(pad(), squeezed, NeoHookean{5e3, 0.45, 1000.0}, {}, with_step(0.01));
-  ImplicitDynamics same(detail::make_deformable_body(
-                            make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), squeezed),
-                        {});
+  ImplicitDynamics same(
+      make_deformable_body(make_hyperelastic_body(pad(), std::vector<NeoHookean>{{5e3, 0.45, 1000.0}}), squeezed), {});
   same.set_state(tissue.motion().displacement(), VectorX::Zero(tissue.motion().displacement().size()));
   REQUIRE(same.prepare_response(0.01));
   tissue.begin_tick();

@@ -4,7 +4,7 @@
 #include "integrator/motions.hpp"
 #include "number_rows.hpp"
 
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 
 using namespace test;
 
@@ -14,9 +14,8 @@ using std::numbers::pi;
 
 template <class Scheme, Element E>
 auto linear_motion(const Body<E>& body, const std::vector<Index>& free, const ExplicitOptions& options = {}) {
-  return ExplicitMotion<detail::LinearForces, Scheme>(detail::LinearForces(assemble_stiffness<E>(body, {})),
-                                                      lumped_mass(body), free, detail::element_frequency_bound(body),
-                                                      options);
+  return ExplicitMotion<LinearForces, Scheme>(LinearForces(assemble_stiffness<E>(body, {})), lumped_mass(body), free,
+                                              element_frequency_bound(body), options);
 }
 
 /// Lame's mode of a cube of side 1: no change of volume, no traction on any face.

@@ -30,7 +30,7 @@ VectorX pushed_through(const Mesh<Tet4>& mesh) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("the smallest volume ratio ignores lanes without an element", "[integrator][report]",
-                   (detail::BatchedTetrahedra<NeoHookean>), (detail::BatchedTetrahedra<NeoHookean, float>)) {
+                   (BatchedTetrahedra<NeoHookean>), (BatchedTetrahedra<NeoHookean, float>)) {
   for (const int n : {1, 2, 3}) {  // 6, 48 and 162 elements: batches with and without empty lanes
     const auto body = soft_block(n);
     const DeformationReport grown = report_of<TestType>(body, stretched(body.rest.mesh, {1.2, 1.0, 1.0}));
@@ -68,8 +68,8 @@ TEST_CASE("a step reports inverted elements and inadmissible materials", "[integ
 
   const StVenantKirchhoff strict{3e3, 0.4, 1e3};
   const auto strict_body = make_hyperelastic_body(mesh, std::vector<StVenantKirchhoff>{strict});
-  ExplicitMotion<detail::BatchedTetrahedra<StVenantKirchhoff>, CentralDifference> other(
-      detail::BatchedTetrahedra<StVenantKirchhoff>(strict_body), lumped_mass(strict_body.rest), above_ground(mesh));
+  ExplicitMotion<BatchedTetrahedra<StVenantKirchhoff>, CentralDifference> other(
+      BatchedTetrahedra<StVenantKirchhoff>(strict_body), lumped_mass(strict_body.rest), above_ground(mesh));
   other.set(u, still);
   other.estimate_limit(40);
   const Status worse = other.step(1e-3 * other.limit());
@@ -103,7 +103,7 @@ TEST_CASE("vectors of the wrong size are refused without a change", "[integrator
 TEST_CASE("the bound limits the step until the estimate has settled", "[integrator]") {
   const auto body = soft_block(3);
   const std::vector<Index> free = all_dofs(body.rest.mesh);
-  const double bound = detail::element_frequency_bound(body.rest), of_bound = (1.0 - 0.07) * 2.0 / std::sqrt(bound);
+  const double bound = element_frequency_bound(body.rest), of_bound = (1.0 - 0.07) * 2.0 / std::sqrt(bound);
   ExplicitOptions options;
   options.first_iterations = 0;
   auto motion = motion_of<CentralDifference>(body, free, options);
@@ -116,8 +116,7 @@ TEST_CASE("the bound limits the step until the estimate has settled", "[integrat
   const auto with = [&](double given, int iterations) {
     ExplicitOptions o;
     o.first_iterations = iterations;
-    NeoHookeanMotion<CentralDifference>(detail::BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest), free,
-                                        given, o);
+    NeoHookeanMotion<CentralDifference>(BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest), free, given, o);
   };
   CHECK_REFUSED(SetupErrorKind::bad_argument, with(infinity, 3));
   CHECK_REFUSED(SetupErrorKind::bad_argument, with(std::nan(""), 40));

@@ -1,5 +1,5 @@
 // Explicit motion of a neo-Hookean block: conservation, refused arguments, extreme states.
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@ Vector3 swirl(const Vector3& p) {
 template <class Scheme>
 bool unstable(const HyperelasticBody<Tet4, NeoHookean>& body, const VectorX& shape, const std::vector<Index>& free,
               double dt) {
-  detail::BatchedTetrahedra<NeoHookean> force(body);
+  BatchedTetrahedra<NeoHookean> force(body);
   const VectorX mass = lumped_mass(body.rest).replicate(1, 3).transpose().reshaped();
   // the tangent at `shape` from differences; linear, so that stiffening does not limit the growth
   VectorX f0(shape.size()), f(shape.size()), moved(shape.size());
@@ -171,7 +171,7 @@ TEST_CASE("invalid steps are refused without a change", "[integrator][extreme][E
   CHECK((motion.state().displacement - before.displacement).norm() <= 1.1e-9 * before.velocity.norm());
   CHECK(motion.state().displacement != before.displacement);
 
-  const detail::BatchedTetrahedra<NeoHookean> force(body);
+  const BatchedTetrahedra<NeoHookean> force(body);
   using Motion = NeoHookeanMotion<CentralDifference>;
   VectorX mass = lumped_mass(body.rest);
   CHECK_REFUSED(SetupErrorKind::bad_argument, Motion(force, mass.head(3), {}));
@@ -190,9 +190,8 @@ TEST_CASE("an unexplained energy growth stops the motion at its last good state"
   options.limit_every = 0;
   options.first_iterations = 0;
   // a bound that is far too low: only the energy check can detect it
-  NeoHookeanMotion<CentralDifference> motion(detail::BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest),
-                                             above_ground(mesh), 0.01 * detail::element_frequency_bound(body.rest),
-                                             options);
+  NeoHookeanMotion<CentralDifference> motion(BatchedTetrahedra<NeoHookean>(body), lumped_mass(body.rest),
+                                             above_ground(mesh), 0.01 * element_frequency_bound(body.rest), options);
   const VectorX still = VectorX::Zero(3 * mesh.node_count());
   motion.set(still, velocity_field(mesh, swirl));
   const double energy = motion.kinetic_energy(), dt = motion.limit();
@@ -261,9 +260,9 @@ TEST_CASE("the energy check of a linear body detects the first steps that are to
   ExplicitOptions options;
   options.limit_every = 0;
   options.first_iterations = 0;
-  ExplicitMotion<detail::LinearForces, CentralDifference> motion(
-      detail::LinearForces(assemble_stiffness<Tet4>(body, {})), lumped_mass(body), above_ground(mesh),
-      0.01 * detail::element_frequency_bound(body), options);
+  ExplicitMotion<LinearForces, CentralDifference> motion(LinearForces(assemble_stiffness<Tet4>(body, {})),
+                                                         lumped_mass(body), above_ground(mesh),
+                                                         0.01 * element_frequency_bound(body), options);
   motion.set(VectorX::Zero(3 * mesh.node_count()), velocity_field(mesh, swirl));
   const double energy = motion.kinetic_energy();
   int steps = 0;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 #include <palpate/assembly/load_vector.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
@@ -44,13 +44,13 @@ std::vector<Index> above_ground(const Mesh<E>& mesh) {
 }
 
 template <class Scheme, class S = double>
-using NeoHookeanMotion = ExplicitMotion<detail::BatchedTetrahedra<NeoHookean, S>, Scheme>;
+using NeoHookeanMotion = ExplicitMotion<BatchedTetrahedra<NeoHookean, S>, Scheme>;
 
 template <class Scheme, class S = double>
 NeoHookeanMotion<Scheme, S> motion_of(const HyperelasticBody<Tet4, NeoHookean>& body, const std::vector<Index>& free,
                                       const ExplicitOptions& options = {}) {
-  return {detail::BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free,
-          detail::element_frequency_bound(body.rest), options};
+  return {BatchedTetrahedra<NeoHookean, S>(body), lumped_mass(body.rest), free, element_frequency_bound(body.rest),
+          options};
 }
 
 /// Linear [kg m/s] and angular [kg m^2/s] momentum, about the origin.

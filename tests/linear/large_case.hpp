@@ -19,7 +19,7 @@ inline const SparseCase& large_case() {
     for (NodeId i = 0; i < body.mesh.node_count(); ++i)
       if (body.mesh.position(i)[2] < 1e-9) bottom.push_back(i);
     const EssentialConditions conditions = conditions_of(body.mesh, Scene().fix(bottom));
-    SparseCase box{"box", detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
+    SparseCase box{"box", free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
     for (Index dof : conditions.free_dofs) box.layout.node_of_dof.push_back(dof / 3);
     box.layout.positions = body.mesh.positions;
     return box;

@@ -287,16 +287,16 @@ TEST_CASE("fronts cover the matrix and have the right rows", "[linear][ordering]
 
 TEST_CASE("the elimination order keeps fill low", "[linear][ordering]") {
   const SparseCase c = sphere_case(6);
-  Eigen::SimplicialLLT<detail::SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> minimum_degree;
   minimum_degree.analyzePattern(c.lower);
   minimum_degree.factorize(c.lower);
-  const auto reference = static_cast<double>(detail::SparseMatrix(minimum_degree.matrixL()).nonZeros());
+  const auto reference = static_cast<double>(SparseMatrix(minimum_degree.matrixL()).nonZeros());
   CHECK(detail::CholeskyAnalysis(c.lower, c.layout).nonzeros() <= 1.15 * reference);
   CHECK(detail::CholeskyAnalysis(c.lower, {}).nonzeros() <= 1.4 * reference);
 }
 
 TEST_CASE("layouts that do not fit are refused", "[linear][ordering]") {
-  const detail::SparseMatrix lower = sphere_stiffness(1);
+  const SparseMatrix lower = sphere_stiffness(1);
   const auto n = static_cast<std::size_t>(lower.rows());
   DofLayout layout;
   SECTION("too few nodes") {

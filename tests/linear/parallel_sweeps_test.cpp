@@ -28,13 +28,13 @@ struct Throwing {
 
 /// Two bodies without a connection: the tree has two roots. Nothing is known about the dofs.
 SparseCase two_bodies() {
-  const detail::SparseMatrix& one = large_case().lower;
+  const SparseMatrix& one = large_case().lower;
   const Index n = one.rows();
   std::vector<Eigen::Triplet<double, Index>> entries;
   for (Index j = 0; j < n; ++j)
-    for (detail::SparseMatrix::InnerIterator it(one, j); it; ++it)
+    for (SparseMatrix::InnerIterator it(one, j); it; ++it)
       for (const Index at : {Index{0}, n}) entries.emplace_back(at + it.row(), at + j, it.value());
-  SparseCase c{"two bodies", detail::SparseMatrix(2 * n, 2 * n), {}};
+  SparseCase c{"two bodies", SparseMatrix(2 * n, 2 * n), {}};
   c.lower.setFromTriplets(entries.begin(), entries.end());
   return c;
 }

@@ -17,8 +17,8 @@ struct EigenStatus {
   Eigen::ComputationInfo sparse_ldlt, dense_llt, dense_ldlt;
 };
 EigenStatus eigen_status(const MatrixX& m) {
-  const detail::SparseMatrix lower = lower_half(m);
-  return {Eigen::SimplicialLDLT<detail::SparseMatrix, Eigen::Lower>(lower).info(), Eigen::LLT<MatrixX>(m).info(),
+  const SparseMatrix lower = lower_half(m);
+  return {Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>(lower).info(), Eigen::LLT<MatrixX>(m).info(),
           Eigen::LDLT<MatrixX>(m).info()};
 }
 
@@ -32,7 +32,7 @@ void check_all_refuse(const MatrixX& m) {
 /// Stiffness of a free body: singular, six rigid motions.
 MatrixX free_body() {
   const Body<Tet4> body = body_of(sphere_tet4(0.05, 2), {liver});
-  return full(detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene())));
+  return full(free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene())));
 }
 
 const MatrixX good = full(sphere_stiffness(2));

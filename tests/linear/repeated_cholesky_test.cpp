@@ -9,7 +9,7 @@ using namespace test;
 namespace {
 
 /// The entry (j, j) of a lower half.
-double& diagonal(detail::SparseMatrix& lower, Index j) {
+double& diagonal(SparseMatrix& lower, Index j) {
   return lower.coeffRef(j, j);
 }
 
@@ -24,7 +24,7 @@ TEST_CASE("a repeated factorisation equals a single one to the last bit", "[line
     VectorX x(repeated.size());
     CHECK_FALSE(repeated.solve_into(x, x).converged);
     for (const double factor : {1.0, 3.0, 1.0}) {
-      const detail::SparseMatrix scaled = factor * c.lower;
+      const SparseMatrix scaled = factor * c.lower;
       REQUIRE(repeated.factorise(scaled));
       SparseCholesky single(analysis, scaled, {});
       const VectorX b = random_vector(repeated.size(), 5);
@@ -43,7 +43,7 @@ TEST_CASE("a repeated factorisation reports a failure and then accepts the next 
   detail::RepeatedCholesky repeated(analysis);
   const Index last = c.lower.rows() - 1;
   for (const double bad : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), infinity}) {
-    detail::SparseMatrix broken = c.lower;
+    SparseMatrix broken = c.lower;
     diagonal(broken, last / 2) = bad;
     CHECK_FALSE(repeated.factorise(broken));
     CHECK_FALSE(repeated.ready());
@@ -93,7 +93,7 @@ TEST_CASE("a factor read in single precision is a preconditioner", "[linear][rep
     const VectorX b = random_vector(exact.size(), 5);
     exact.solve_into(b, x);
     single.solve_into(b, y);
-    VectorX left = b - detail::SparseMatrix(c.lower.selfadjointView<Eigen::Lower>()) * y, more(y.size());
+    VectorX left = b - SparseMatrix(c.lower.selfadjointView<Eigen::Lower>()) * y, more(y.size());
     const double before = (x - y).norm();
     single.solve_into(left, more);
     y += more;

@@ -97,7 +97,7 @@ TEMPLATE_TEST_CASE("copies solve at the same time with the same answer", "[linea
 }
 
 TEST_CASE("a block of right-hand sides equals single solves", "[linear]") {
-  const detail::SparseMatrix lower = sphere_stiffness(2);
+  const SparseMatrix lower = sphere_stiffness(2);
   SparseCholesky solver(lower, {});
   testing::Random random(31);
   MatrixX b(lower.rows(), 13);
@@ -199,7 +199,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[linear][conditio
     CHECK(estimate <= 1.01 * condition);
     CHECK(estimate >= 0.1 * condition);
   }
-  const detail::SparseMatrix lower = sphere_stiffness(2);
+  const SparseMatrix lower = sphere_stiffness(2);
   const MatrixX k = full(lower);
   SparseCholesky solver(lower, {});
   const double estimate = k.cwiseAbs().colwise().sum().maxCoeff() * detail::inverse_norm_estimate(solver);

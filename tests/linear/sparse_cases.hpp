@@ -9,7 +9,7 @@ namespace test {
 /// A positive definite matrix with optional information about its dofs.
 struct SparseCase {
   std::string name;
-  detail::SparseMatrix lower;
+  SparseMatrix lower;
   DofLayout layout;
 };
 
@@ -20,30 +20,29 @@ inline SparseCase sphere_case(int refinement) {
   for (NodeId i = 0; i < body.mesh.node_count(); ++i)
     if (body.mesh.position(i)[2] < -0.02) below.push_back(i);
   const EssentialConditions conditions = conditions_of(body.mesh, Scene().fix(below));
-  SparseCase c{
-      "sphere " + std::to_string(refinement), detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
+  SparseCase c{"sphere " + std::to_string(refinement), free_matrix(assemble_stiffness<Tet4>(body, {}), conditions), {}};
   for (Index dof : conditions.free_dofs) c.layout.node_of_dof.push_back(dof / 3);
   c.layout.positions = body.mesh.positions;
   return c;
 }
 
 /// Diagonally dominant with the given off-diagonal pairs and random values.
-inline detail::SparseMatrix dominant(Index n, const std::vector<std::array<Index, 2>>& pairs) {
+inline SparseMatrix dominant(Index n, const std::vector<std::array<Index, 2>>& pairs) {
   testing::Random random(static_cast<std::uint64_t>(n) + pairs.size());
   MatrixX m = MatrixX::Zero(n, n);
   for (const auto& [i, j] : pairs)
     if (i != j) m(std::max(i, j), std::min(i, j)) = random.uniform(-1.0, 1.0);
   const MatrixX both = m + m.transpose();
   m.diagonal() = both.cwiseAbs().rowwise().sum().array() + 0.1 + VectorX::Random(n).array().abs();
-  return detail::SparseMatrix(m.sparseView());
+  return SparseMatrix(m.sparseView());
 }
 
 inline std::vector<SparseCase> sparse_cases() {
   std::vector<SparseCase> cases;
-  const auto add = [&](std::string name, detail::SparseMatrix lower) {
+  const auto add = [&](std::string name, SparseMatrix lower) {
     cases.push_back({std::move(name), std::move(lower), {}});
   };
-  add("empty", detail::SparseMatrix(0, 0));
+  add("empty", SparseMatrix(0, 0));
   add("one", dominant(1, {}));
   add("diagonal", dominant(50, {}));
   std::vector<std::array<Index, 2>> chain, arrow, dense, islands, random_pairs;

@@ -7,7 +7,7 @@ using namespace test;
 
 namespace {
 
-SetupProblem problem_of(const detail::SparseMatrix& lower) {
+SetupProblem problem_of(const SparseMatrix& lower) {
   const SetupProblem p = refusal([&] { SparseCholesky(lower, {}); });
   CHECK(p.kind == SetupErrorKind::not_positive_definite);
   CHECK(p.count > 0);
@@ -16,18 +16,18 @@ SetupProblem problem_of(const detail::SparseMatrix& lower) {
   return p;
 }
 
-detail::SparseMatrix free_sphere(int refinement) {
+SparseMatrix free_sphere(int refinement) {
   const Body<Tet4> body = body_of(sphere_tet4(0.05, refinement), {liver});
-  return detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene()));
+  return free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene()));
 }
 
 }  // namespace
 
 TEST_CASE("sparse Cholesky: NaN and infinity are refused wherever they are", "[linear][sparse_cholesky][extreme]") {
-  const detail::SparseMatrix good = sphere_stiffness(3);
+  const SparseMatrix good = sphere_stiffness(3);
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
     for (Index at : {Index{0}, good.nonZeros() / 3, good.nonZeros() / 2, good.nonZeros() - 1}) {
-      detail::SparseMatrix m = good;
+      SparseMatrix m = good;
       m.valuePtr()[at] = bad;
       problem_of(m);
     }
@@ -35,8 +35,8 @@ TEST_CASE("sparse Cholesky: NaN and infinity are refused wherever they are", "[l
 
 TEST_CASE("sparse Cholesky: indefinite and negative matrices are refused", "[linear][sparse_cholesky][extreme]") {
   CHECK(problem_of(sphere_stiffness(3, {5e3, 0.6, 0.0})).value < 0.0);
-  CHECK(problem_of(detail::SparseMatrix(-sphere_stiffness(2))).value <= 0.0);
-  detail::SparseMatrix m = sphere_stiffness(2);
+  CHECK(problem_of(SparseMatrix(-sphere_stiffness(2))).value <= 0.0);
+  SparseMatrix m = sphere_stiffness(2);
   m.coeffRef(31, 31) = -1.0;
   const SetupProblem p = problem_of(m);
   CHECK(p.value < 0.0);
@@ -49,7 +49,7 @@ TEST_CASE("sparse Cholesky: a single bad dof is reported", "[linear][sparse_chol
   CHECK(p.count == 1);
   REQUIRE(p.ids.size() == 1);
   CHECK(p.ids[0] == 17);
-  detail::SparseMatrix missing(5, 5);  // no entry at all, not even a zero
+  SparseMatrix missing(5, 5);  // no entry at all, not even a zero
   for (Index i : {0, 1, 3, 4}) missing.insert(i, i) = 1.0;
   missing.makeCompressed();
   CHECK(problem_of(missing).ids == std::vector<std::int64_t>{2});
@@ -61,7 +61,7 @@ TEST_CASE("sparse Cholesky: bad dofs are reported by their nodes when these are 
   m(17, 17) = m(16, 16) = m(3, 3) = 0.0;
   DofLayout layout;
   for (Index dof = 0; dof < 30; ++dof) layout.node_of_dof.push_back(100 + dof / 3);
-  const detail::SparseMatrix lower = lower_half(m);
+  const SparseMatrix lower = lower_half(m);
   const SetupProblem p = refusal([&] { SparseCholesky(detail::CholeskyAnalysis(lower, layout), lower, {}); });
   CHECK(p.kind == SetupErrorKind::not_positive_definite);
   CHECK(p.ids == std::vector<std::int64_t>{101, 105});
@@ -73,7 +73,7 @@ TEST_CASE("sparse Cholesky: a free body is refused, at any size and in any unit"
   for (int refinement : {1, 2, 4, 7})
     for (double unit : {1e-9, 1.0, 1e9}) {
       INFO(refinement << " " << unit);
-      problem_of(detail::SparseMatrix(unit * free_sphere(refinement)));
+      problem_of(SparseMatrix(unit * free_sphere(refinement)));
     }
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("sparse Cholesky: a barely definite matrix is accepted", "[linear][spa
 }
 
 TEST_CASE("sparse Cholesky: a refusal leaves no state behind", "[linear][sparse_cholesky]") {
-  const detail::SparseMatrix good = sphere_stiffness(2);
-  detail::SparseMatrix bad = good;
+  const SparseMatrix good = sphere_stiffness(2);
+  SparseMatrix bad = good;
   bad.coeffRef(4, 4) = -1.0;
   SparseCholesky solver(good, {});
   VectorX before(good.rows()), after(good.rows());

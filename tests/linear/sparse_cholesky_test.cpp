@@ -16,7 +16,7 @@ SparseCholesky factored(const SparseCase& c) {
 }
 
 /// Backward error |b - K x| / (|K| |x| + |b|) in maximum norms.
-double residual(const detail::SparseMatrix& lower, const VectorX& b, const VectorX& x) {
+double residual(const SparseMatrix& lower, const VectorX& b, const VectorX& x) {
   const MatrixX k = full(lower);
   return largest(b - k * x) / (k.cwiseAbs().rowwise().sum().maxCoeff() * largest(x) + largest(b));
 }
@@ -54,7 +54,7 @@ TEST_CASE("the sparse solver passes the law suite of solvers", "[linear][sparse_
   SparseCholesky solver = factored(c);
   CHECK(testing::describe(testing::solver_laws(op_of(k), solver, {1e-13, true})) == "");
   for (double unit : {1e-12, 1e12}) {
-    SparseCholesky scaled(detail::SparseMatrix(unit * c.lower), {});
+    SparseCholesky scaled(SparseMatrix(unit * c.lower), {});
     const VectorX b = random_vector(k.rows(), 9), truth = exact_solution(unit * k, b);
     VectorX x(k.rows());
     scaled.solve_into(b, x);
@@ -64,7 +64,7 @@ TEST_CASE("the sparse solver passes the law suite of solvers", "[linear][sparse_
 
 TEST_CASE("a large front is factorised in panels", "[linear][sparse_cholesky]") {
   const Index n = 700;  // several panels, and more rows than the unpacked kernels take
-  const detail::SparseMatrix lower = lower_half(with_condition(n, 1e4));
+  const SparseMatrix lower = lower_half(with_condition(n, 1e4));
   SparseCholesky solver(lower, {});
   CHECK(solver.analysis().front_count() == 1);
   CHECK(solver.factor_nonzeros() == n * (n + 1) / 2);
@@ -171,7 +171,7 @@ TEST_CASE("a block of right-hand sides equals single solves (sparse)", "[linear]
 TEST_CASE("new values can be factorised on an analysed pattern", "[linear][sparse_cholesky]") {
   const SparseCase c = sphere_case(3);
   const detail::CholeskyAnalysis analysis(c.lower, c.layout);
-  detail::SparseMatrix other = c.lower;
+  SparseMatrix other = c.lower;
   for (Index j = 0; j < other.cols(); ++j) other.coeffRef(j, j) *= 1.5;
   const VectorX b = random_vector(other.rows(), 8);
   VectorX reused(b.size()), fresh(b.size()), again(b.size());
@@ -181,7 +181,7 @@ TEST_CASE("new values can be factorised on an analysed pattern", "[linear][spars
   CHECK(reused == fresh);  // to the last bit, and in every run
   CHECK(reused != again);
   CHECK(analysis.fits(other));
-  const detail::SparseMatrix wrong = sphere_stiffness(2);
+  const SparseMatrix wrong = sphere_stiffness(2);
   CHECK_FALSE(analysis.fits(wrong));
   CHECK_REFUSED(SetupErrorKind::bad_argument, SparseCholesky(analysis, wrong, {}));
   CHECK_FALSE(detail::CholeskyAnalysis().fits(wrong));

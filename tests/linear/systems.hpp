@@ -10,12 +10,12 @@
 namespace test {
 
 /// The stiffness of the free dofs of a constrained sphere of liver, lower half.
-inline detail::SparseMatrix sphere_stiffness(int refinement, const LinearElastic& m = liver) {
+inline SparseMatrix sphere_stiffness(int refinement, const LinearElastic& m = liver) {
   const Body<Tet4> body{sphere_tet4(0.05, refinement), {m.elasticity()}, {m.density}, {Vector6::Zero()}};  // unchecked
   std::vector<NodeId> below;
   for (NodeId i = 0; i < body.mesh.node_count(); ++i)
     if (body.mesh.position(i)[2] < -0.02) below.push_back(i);
-  return detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene().fix(below)));
+  return free_matrix(assemble_stiffness<Tet4>(body, {}), conditions_of(body.mesh, Scene().fix(below)));
 }
 
 /// Entries between -1 and 1.
@@ -27,13 +27,13 @@ inline VectorX random_vector(Index n, std::uint64_t seed) {
 }
 
 /// A full symmetric matrix from its lower half.
-inline MatrixX full(const detail::SparseMatrix& lower) {
+inline MatrixX full(const SparseMatrix& lower) {
   return MatrixX(MatrixX(lower).selfadjointView<Eigen::Lower>());
 }
 
 /// The lower half of a matrix, in the form the sparse solver takes.
-inline detail::SparseMatrix lower_half(const MatrixX& m) {
-  return detail::SparseMatrix(MatrixX(m.triangularView<Eigen::Lower>()).sparseView());
+inline SparseMatrix lower_half(const MatrixX& m) {
+  return SparseMatrix(MatrixX(m.triangularView<Eigen::Lower>()).sparseView());
 }
 
 /// The matrix as an operator.

@@ -71,7 +71,7 @@ TEST_CASE("one linearisation per step follows the converged steps, closer with s
     double error[2];
     for (int fine = 0; fine < 2; ++fine) {
       Exact motion(pad(), standing(), to_the_end(scheme));
-      ImplicitDynamics reference(detail::make_deformable_body(pad(), standing()), {.scheme = scheme});
+      ImplicitDynamics reference(make_deformable_body(pad(), standing()), {.scheme = scheme});
       const double h = fine ? 1e-3 : 2e-3;
       const VectorX u = bent(motion, 4.0), v = VectorX::Zero(u.size());
       motion.set_state(u, v);
@@ -101,7 +101,7 @@ TEST_CASE("single precision with a tolerance of one percent stays close to the r
 }
 
 TEST_CASE("the motion settles in the equilibrium for any step and preconditioner", "[model][corotated]") {
-  ImplicitDynamics reference(detail::make_deformable_body(pad(), standing()), {.mass_damping = 20.0});
+  ImplicitDynamics reference(make_deformable_body(pad(), standing()), {.mass_damping = 20.0});
   for (int k = 0; k < 200; ++k) reference.step(0.05);
   const auto settles = [&](auto&& motion, double h, double tolerance) {
     for (int k = 0; k * h < 8.0; ++k) motion.step(h);

@@ -32,11 +32,11 @@ constexpr double length = 0.1, youngs_modulus = 1e4, density = 1e3;
 
 /// A cube that can only stretch uniformly along x: an oscillator of mass m = rho V / 2 (half of it at the free end) and
 /// stiffness E A / L.
-detail::DeformableBody oscillator(double load = 0.0) {
+DeformableBody oscillator(double load = 0.0) {
   Scene scene;
   const Components still{0.0, 0.0, 0.0}, along{std::nullopt, 0.0, 0.0};
   scene.prescribe("x0", still).prescribe("x1", along).traction("x1", {load, 0.0, 0.0});
-  return detail::make_deformable_body(
+  return make_deformable_body(
       make_body(box_hex8({length, length, length}, {1, 1, 1}), LinearElastic{youngs_modulus, 0.0, density}), scene);
 }
 const double omega = std::sqrt(youngs_modulus * length / (0.5 * density * length * length * length));
@@ -137,7 +137,7 @@ TEST_CASE("an elastic bar under a sudden pull moves as in another code", "[model
   const std::string folder = PALPATE_TEST_DATA "/oracle/L_dynamic/bar_hex8";
   const auto mesh = io::read_mesh<Hex8>(folder + "/mesh_v22.msh");
   const Scene scene = Scene().fix("fixed").traction("load", {1000.0, 0.0, 0.0});
-  ImplicitDynamics d(detail::make_deformable_body(make_body(mesh, LinearElastic{1e6, 0.0, 1e3}), scene),
+  ImplicitDynamics d(make_deformable_body(make_body(mesh, LinearElastic{1e6, 0.0, 1e3}), scene),
                      {.scheme = TimeScheme::newmark(), .mass = MassKind::consistent});
   Index tip = 0;
   for (Index i = 0; i < mesh.node_count(); ++i)
@@ -167,7 +167,7 @@ TEST_CASE("a free body conserves its momentum and falls with gravity", "[model][
   Scene scene;
   scene.gravity({0.0, 0.0, -9.81});
   for (const TimeScheme scheme : {TimeScheme::implicit_euler(), TimeScheme::newmark()}) {
-    ImplicitDynamics d(detail::make_deformable_body(block(), scene), {.scheme = scheme});
+    ImplicitDynamics d(make_deformable_body(block(), scene), {.scheme = scheme});
     testing::Random random(7);
     VectorX u = VectorX::Zero(d.displacement().size()), v(u.size());
     for (double& x : v) x = random.uniform(-0.2, 0.2);
@@ -180,7 +180,7 @@ TEST_CASE("a free body conserves its momentum and falls with gravity", "[model][
       CHECK((momentum(d) - expected).norm() <= 1e-10 * expected.norm());
     }
   }
-  ImplicitDynamics rotating(detail::make_deformable_body(block(), Scene()), {.scheme = TimeScheme::implicit_euler()});
+  ImplicitDynamics rotating(make_deformable_body(block(), Scene()), {.scheme = TimeScheme::implicit_euler()});
   VectorX v(rotating.displacement().size());
   for (Index i = 0; i < v.size() / 3; ++i)
     v.segment<3>(3 * i) = Vector3(0.0, 0.0, 5.0).cross(rotating.body().positions[static_cast<std::size_t>(i)]);
@@ -201,7 +201,7 @@ TEST_CASE("a free body conserves its momentum and falls with gravity", "[model][
 TEST_CASE("steps of a free body converge after its oscillation has decayed", "[model][dynamics]") {
   const NeoHookean soft{.youngs_modulus = 3e3, .poisson_ratio = 0.45, .density = density};
   const Mesh<Tet4> cube = box_tet4(Vector3(0.1, 0.1, 0.1), {2, 2, 2}, BoxSplit::six);
-  ImplicitDynamics d(detail::make_deformable_body(make_body(cube, soft.small_strain()), Scene()),
+  ImplicitDynamics d(make_deformable_body(make_body(cube, soft.small_strain()), Scene()),
                      {.scheme = TimeScheme::implicit_euler(), .newton = {.tolerance = 1e-13}});
   VectorX v(d.displacement().size());
   for (Index i = 0; i < v.size() / 3; ++i) {
@@ -220,19 +220,19 @@ TEST_CASE("a body at rest stays at rest, and a settled one agrees with statics",
   const Scene scene = Scene().fix("z0").gravity({9.81, 0.0, 0.0});
   Equilibrium statics(block(), scene);
   REQUIRE(statics.solve().converged);
-  ImplicitDynamics d(detail::make_deformable_body(block(), scene), {.mass_damping = 20.0});
+  ImplicitDynamics d(make_deformable_body(block(), scene), {.mass_damping = 20.0});
   StepReport report;
   for (int k = 0; k < 400; ++k) report = d.step(0.02);
   CHECK(report.taken);
   CHECK((d.displacement() - statics.displacement()).norm() <= 1e-7 * statics.displacement().norm());
-  ImplicitDynamics still(detail::make_deformable_body(block(), Scene().fix("z0")), {});
+  ImplicitDynamics still(make_deformable_body(block(), Scene().fix("z0")), {});
   for (int k = 0; k < 20; ++k) still.step(1e-3);
   CHECK(still.displacement().isZero(0.0));
 }
 
 TEST_CASE("steps of any length are bounded, and invalid steps are not taken", "[model][dynamics][extreme][E1]") {
   for (const double h : {1e-9, 1e-6, 1e-3, 0.1, 1.0, 100.0}) {
-    ImplicitDynamics d(detail::make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
     double before = d.energy();
     for (int k = 0; k < 8; ++k) {
       const StepReport report = d.step(h);
@@ -243,7 +243,7 @@ TEST_CASE("steps of any length are bounded, and invalid steps are not taken", "[
       before = now;
     }
   }
-  ImplicitDynamics d(detail::make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
+  ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0").gravity({9.81, 0.0, 0.0})), {});
   d.step(1e-3);
   const VectorX u = d.displacement();
   for (const double h : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
@@ -258,7 +258,7 @@ TEST_CASE("bodies with random displacements settle to rest", "[model][dynamics][
   int settled = 0;
   constexpr int runs = 12;
   for (int run = 0; run < runs; ++run) {
-    ImplicitDynamics d(detail::make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
     VectorX u(d.displacement().size());
     for (double& x : u) x = random.uniform(-0.04, 0.04);
     d.set_state(u, VectorX::Zero(u.size()));
@@ -273,7 +273,7 @@ TEST_CASE("bodies with random displacements settle to rest", "[model][dynamics][
 
 TEST_CASE("a motion set to a state again repeats itself to the last bit", "[model][dynamics]") {
   testing::Random random(11);
-  ImplicitDynamics d(detail::make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
+  ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass_damping = 5.0});
   VectorX folded(d.displacement().size());
   for (double& x : folded) x = random.uniform(-0.08, 0.08);  // tangents that are not positive definite
   std::vector<VectorX> first;
@@ -288,7 +288,7 @@ TEST_CASE("a motion set to a state again repeats itself to the last bit", "[mode
 }
 
 TEST_CASE("dynamics refuses bodies without mass, and negative damping", "[model][dynamics]") {
-  const auto kind = [](detail::DeformableBody body, const DynamicsParameters& parameters) {
+  const auto kind = [](DeformableBody body, const DynamicsParameters& parameters) {
     try {
       ImplicitDynamics d(std::move(body), parameters);
     } catch (const SetupError& error) {
@@ -297,8 +297,8 @@ TEST_CASE("dynamics refuses bodies without mass, and negative damping", "[model]
     return SetupErrorKind::cancelled;
   };
   const auto weightless = [] {
-    return detail::make_deformable_body(make_body(box_tet4({1, 1, 1}, {1, 1, 1}), LinearElastic{1e3, 0.3, 0.0}),
-                                        Scene().fix("x0"));
+    return make_deformable_body(make_body(box_tet4({1, 1, 1}, {1, 1, 1}), LinearElastic{1e3, 0.3, 0.0}),
+                                Scene().fix("x0"));
   };
   CHECK(kind(weightless(), {}) == SetupErrorKind::bad_density);
   CHECK(kind(oscillator(), {.mass_damping = -1.0}) == SetupErrorKind::bad_argument);
@@ -313,19 +313,19 @@ TEST_CASE("dynamics refuses bodies without mass, and negative damping", "[model]
 TEST_CASE("a correction uses the tangent, also after a step without iterations", "[model][dynamics]") {
   for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
     const Scene scene = Scene().fix("z0");
-    ImplicitDynamics d(detail::make_deformable_body(block(), scene), {.mass = mass});
+    ImplicitDynamics d(make_deformable_body(block(), scene), {.mass = mass});
     VectorX force = VectorX::Zero(d.displacement().size()), expected(force.size());
     force[d.body().conditions.free_dofs.back()] = 1e-3;
     const double h = 5e-3;
     REQUIRE(d.step(h).newton.iterations == 0);
     REQUIRE(d.correct(force));
-    ImplicitDynamics fresh(detail::make_deformable_body(block(), scene), {.mass = mass});
+    ImplicitDynamics fresh(make_deformable_body(block(), scene), {.mass = mass});
     REQUIRE(fresh.prepare_response(h));
     fresh.respond(force, expected);
     REQUIRE(expected.norm() > 0.0);
     CHECK((d.displacement() - expected).norm() <= 1e-12 * expected.norm());
     // the same force applied from the start of the step gives the same result to first order
-    ImplicitDynamics loaded(detail::make_deformable_body(block(), scene), {.mass = mass});
+    ImplicitDynamics loaded(make_deformable_body(block(), scene), {.mass = mass});
     loaded.set_load(1e-3 * force);
     REQUIRE(loaded.step(h).newton.converged);
     CHECK((1e3 * loaded.displacement() - expected).norm() <= 1e-3 * expected.norm());
@@ -335,9 +335,9 @@ TEST_CASE("a correction uses the tangent, also after a step without iterations",
 TEST_CASE("only the end of a step is corrected, and the result is always a valid state", "[model][dynamics]") {
   const auto scene = Scene().fix("z0");
   ImplicitDynamics d(
-      detail::make_deformable_body(make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
-                                                          std::vector<NeoHookeanLogarithmic>{{5e3, 0.4, density}}),
-                                   scene),
+      make_deformable_body(make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
+                                                  std::vector<NeoHookeanLogarithmic>{{5e3, 0.4, density}}),
+                           scene),
       {});
   VectorX force = VectorX::Zero(d.displacement().size());
   force[force.size() - 1] = 1e-4;
@@ -365,7 +365,7 @@ TEST_CASE("set_state applies the prescribed values", "[model][dynamics]") {
   const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, -0.02});
   Equilibrium statics(block(), scene);
   REQUIRE(statics.solve().converged);
-  ImplicitDynamics d(detail::make_deformable_body(block(), scene), {});
+  ImplicitDynamics d(make_deformable_body(block(), scene), {});
   d.set_state(statics.displacement(), VectorX::Zero(d.displacement().size()));
   CHECK(d.displacement() == statics.displacement());
   CHECK(d.acceleration().norm() <= 1e-6);
@@ -375,8 +375,7 @@ TEST_CASE("set_state applies the prescribed values", "[model][dynamics]") {
 
 TEST_CASE("a correction does not move prescribed nodes", "[model][dynamics]") {
   const Scene scene = Scene().fix("z0").prescribe("z1", {0.0, 0.0, 0.0});
-  ImplicitDynamics d(detail::make_deformable_body(block(), scene), {}),
-      same(detail::make_deformable_body(block(), scene), {});
+  ImplicitDynamics d(make_deformable_body(block(), scene), {}), same(make_deformable_body(block(), scene), {});
   VectorX force = VectorX::Zero(d.displacement().size());
   force[d.body().conditions.free_dofs.front()] = 1e-3;
   for (ImplicitDynamics* motion : {&d, &same}) REQUIRE(motion->step(5e-3).taken);
@@ -388,8 +387,8 @@ TEST_CASE("a correction does not move prescribed nodes", "[model][dynamics]") {
 
 TEST_CASE("a response needs a step and uses its tangent, also after a step without iterations", "[model][dynamics]") {
   for (const MassKind mass : {MassKind::lumped, MassKind::consistent}) {
-    ImplicitDynamics d(detail::make_deformable_body(block(), Scene().fix("z0")), {.mass = mass}),
-        fresh(detail::make_deformable_body(block(), Scene().fix("z0")), {.mass = mass});
+    ImplicitDynamics d(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass}),
+        fresh(make_deformable_body(block(), Scene().fix("z0")), {.mass = mass});
     VectorX force = VectorX::Zero(d.displacement().size()), u(force.size()), expected(force.size());
     force[d.body().conditions.free_dofs.back()] = 1e-3;
     CHECK_FALSE(d.respond(force, u));
@@ -406,7 +405,7 @@ TEST_CASE("the potential does not rise in a step, for any predicted displacement
   const auto body = make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
                                            std::vector<StVenantKirchhoff>{{5e3, 0.4, density}});
   for (const double h : {1e-3, 1e-2, 1e-1, 1.0}) {
-    ImplicitDynamics d(detail::make_deformable_body(body, Scene().fix("z0")), {.newton = {.maximum_iterations = 2}});
+    ImplicitDynamics d(make_deformable_body(body, Scene().fix("z0")), {.newton = {.maximum_iterations = 2}});
     const VectorX start = VectorX::Zero(d.displacement().size());
     d.set_state(start, VectorX::Constant(start.size(), 10.0));
     const VectorX v = d.velocity();
@@ -423,7 +422,7 @@ TEST_CASE("the potential does not rise in a step, for any predicted displacement
 
 TEST_CASE("vectors of a wrong size are refused by motions and equilibria", "[model][dynamics][extreme]") {
   const Scene scene = Scene().fix("z0");
-  ImplicitDynamics d(detail::make_deformable_body(block(), scene), {});
+  ImplicitDynamics d(make_deformable_body(block(), scene), {});
   Equilibrium statics(block(), scene);
   const VectorX wrong = VectorX::Zero(d.displacement().size() + 3), right = d.displacement();
   CHECK_REFUSED(SetupErrorKind::bad_argument, d.set_load(wrong));
@@ -439,10 +438,10 @@ TEST_CASE("vectors of a wrong size are refused by motions and equilibria", "[mod
 TEST_CASE("equilibrium supports linear bodies", "[model][equilibrium]") {
   const auto body = make_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}), LinearElastic{5e3, 0.4, density});
   const Scene scene = Scene().fix("z0").gravity({0.0, 0.0, -9.81});
-  Equilibrium statics(detail::make_constrained_body(body, scene));
+  Equilibrium statics(make_constrained_body(body, scene));
   REQUIRE(statics.solve().converged);
   CHECK_THAT(statics.reactions().sum(), WithinRel(density * 0.04 * 0.04 * 0.08 * 9.81, 1e-9));
-  CHECK_REFUSED(SetupErrorKind::unconstrained, detail::make_constrained_body(body, Scene().gravity({0.0, 0.0, -9.81})));
+  CHECK_REFUSED(SetupErrorKind::unconstrained, make_constrained_body(body, Scene().gravity({0.0, 0.0, -9.81})));
 }
 
 TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step", "[model][dynamics][extreme]",
@@ -452,9 +451,9 @@ TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step
   const auto top = [&](const ImplicitDynamics& d) { return d.displacement()[3 * (mesh.node_count() - 1) + 2]; };
   for (const double moved : {-1.5 * layer, 1.5 * layer}) {
     const std::vector<TestType> law{TestType{5e3, 0.45, 1000.0}};
-    ImplicitDynamics d(detail::make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
                        {.mass_damping = 20.0}),
-        slow(detail::make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
+        slow(make_deformable_body(make_hyperelastic_body(mesh, law), Scene().fix("z0").fix("z1")),
              {.mass_damping = 20.0});
     VectorX values = VectorX::Zero(d.displacement().size());
     for (int k = 1; k <= 300; ++k) {
@@ -473,10 +472,9 @@ TEMPLATE_TEST_CASE("supports may move by more than a layer of elements in a step
 TEST_CASE("a nearly incompressible bar follows its support in steps of two iterations, and returns",
           "[model][dynamics][extreme]") {
   const Mesh<Tet10> mesh = promote<Tet10>(box_tet4({0.06, 0.02, 0.02}, {6, 2, 2}, BoxSplit::six));
-  ImplicitDynamics d(
-      detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{NeoHookean{5e3, 0.499, 1000.0}}),
-                                   Scene().fix("x0").fix("x1")),
-      {.mass_damping = 20.0, .newton = {.maximum_iterations = 2, .tolerance = 1e-9}});
+  ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{NeoHookean{5e3, 0.499, 1000.0}}),
+                                          Scene().fix("x0").fix("x1")),
+                     {.mass_damping = 20.0, .newton = {.maximum_iterations = 2, .tolerance = 1e-9}});
   const auto pull = [&](double stretch) {
     VectorX values = VectorX::Zero(3 * mesh.node_count());
     for (Index i = 0; i < mesh.node_count(); ++i)
@@ -493,8 +491,8 @@ TEST_CASE("a nearly incompressible bar follows its support in steps of two itera
 }
 
 TEST_CASE("a spring that pushes a point ends in equilibrium with the body, by Newton's method", "[model][dynamics]") {
-  const auto made = [] { return detail::make_deformable_body(block(), Scene().fix("z0")); };
-  const detail::DeformableBody body = made();
+  const auto made = [] { return make_deformable_body(block(), Scene().fix("z0")); };
+  const DeformableBody body = made();
   const auto is_on_top = [&](std::size_t i) { return body.positions[i][2] > 0.0799; };
   std::size_t first = 0;
   while (!is_on_top(first)) ++first;

@@ -27,8 +27,8 @@ VectorX reduced(const NaturalFrequencies& modes, const LinearElastic& m, double 
 template <Element E>
 VectorX dense_eigenvalues(const Body<E>& body, const Scene& scene) {
   const EssentialConditions conditions = conditions_of(body.mesh, scene);
-  const MatrixX k = MatrixX(detail::free_matrix(assemble_stiffness<E>(body, {}), conditions));
-  const MatrixX m = MatrixX(detail::free_matrix(assemble_mass<E>(body), conditions));
+  const MatrixX k = MatrixX(free_matrix(assemble_stiffness<E>(body, {}), conditions));
+  const MatrixX m = MatrixX(free_matrix(assemble_mass<E>(body), conditions));
   return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX>(k, m, Eigen::EigenvaluesOnly).eigenvalues();
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("the force of a surrounded part is the derivative of its energy", "[mo
   const auto far = detail::part_of(body.rest, parts.far);
   detail::LinearSurroundings surroundings(
       assemble_stiffness<Tet4>(far, {}),
-      detail::conditions_of(parts.far, detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
+      detail::conditions_of(parts.far, resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
       far.mesh.positions, parts.interface_in(parts.far), {});
   const MatrixX& s = surroundings.stiffness();
   CHECK((s - s.transpose()).norm() == 0.0);

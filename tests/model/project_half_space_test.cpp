@@ -52,9 +52,9 @@ Scatter scatter_of(const Mesh<E>& mesh, double poisson_ratio) {
   Scene scene;
   scene.fix("z0").touch("z1");
   const HapticFEModel<E, LinearElastic> model(mesh, scene, LinearElastic{1.0, poisson_ratio, 1.0});
-  const auto table = detail::project_half_space<E>(
-      model.body(), model.boundary(), model.touchable_nodes(),
-      detail::resolve_essential(model.mesh(), model.boundary(), scene).constrained, nullptr, {});
+  const auto table =
+      detail::project_half_space<E>(model.body(), model.boundary(), model.touchable_nodes(),
+                                    resolve_essential(model.mesh(), model.boundary(), scene).constrained, nullptr, {});
   std::vector<double> whole, rest;
   for (int v = 0; v < table.vertex_count(); ++v)
     if (table.vertex(v).position.template head<2>().cwiseAbs().maxCoeff() < 2.5) {

@@ -62,8 +62,7 @@ TEMPLATE_TEST_CASE("a quasi-Newton equilibrium is that of Newton's method", "[mo
     mesh = promote<Tet10>(box_tet4(beam_size, {8, 2, 2}, BoxSplit::six));
   else
     mesh = beam();
-  Equilibrium newton(
-      detail::make_constrained_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()));
+  Equilibrium newton(make_constrained_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()));
   REQUIRE(newton.solve().converged);
   const VectorX& exact = newton.displacement();
   const auto motion = quasi_newton(mesh, hanging(), {});
@@ -73,9 +72,8 @@ TEMPLATE_TEST_CASE("a quasi-Newton equilibrium is that of Newton's method", "[mo
 
 TEST_CASE("quasi-Newton steps are those of Newton's method", "[model][quasi_newton]") {
   const auto mesh = beam();
-  ImplicitDynamics newton(
-      detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()),
-      {.mass_damping = 2.0});
+  ImplicitDynamics newton(make_deformable_body(make_hyperelastic_body(mesh, std::vector<NeoHookean>{soft}), hanging()),
+                          {.mass_damping = 2.0});
   const auto motion = quasi_newton(
       mesh, hanging(), {.settle = false, .mass_damping = 2.0, .maximum_iterations = 100, .tolerance = 1e-10});
   for (int k = 0; k < 20; ++k) {
@@ -213,7 +211,7 @@ TEST_CASE("viscoelastic tissue relaxes in quasi-Newton steps as in Newton's", "[
   const auto mesh = promote<Tet10>(box_tet4({0.04, 0.04, 0.04}, {2, 2, 2}, BoxSplit::six));
   const Scene scene = Scene().fix("z0").touch("z1").traction("z1", {300.0, 0.0, -200.0});
   const auto body = [&] { return make_hyperelastic_body(mesh, std::vector<Law>{law}); };
-  ImplicitDynamics newton(detail::make_deformable_body(body(), scene));
+  ImplicitDynamics newton(make_deformable_body(body(), scene));
   const auto motion = SolverTraits<Implicit<QuasiNewton<>>>::make_motion(
                           body(), scene, {.settle = false, .maximum_iterations = 100, .tolerance = 1e-10}, {})
                           .motion;

@@ -38,7 +38,7 @@ struct LinearBlock : StillTissue {
   };
   LinearBlock() {
     const Mesh<Tet4> mesh = rubber_block();
-    const auto conditions = detail::resolve_essential(mesh, extract_boundary<Tet4>(mesh), Scene().fix("z0"));
+    const auto conditions = resolve_essential(mesh, extract_boundary<Tet4>(mesh), Scene().fix("z0"));
     const BlockMatrix k = assemble_stiffness<Tet4>(make_hyperelastic_body(mesh, std::vector{rubber}).rest, {});
     const Index n = k.size();
     MatrixX dense(n, n);

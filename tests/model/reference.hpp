@@ -18,7 +18,7 @@ class Reference {
   Reference(const Mesh<Tet4>& mesh, const std::vector<LinearElastic>& materials, const Scene& scene)
       : body_(body_of(mesh, materials)),
         boundary_(extract_boundary<Tet4>(body_.mesh)),
-        conditions_(detail::resolve_essential(body_.mesh, boundary_, scene)),
+        conditions_(resolve_essential(body_.mesh, boundary_, scene)),
         k_(closed_form_stiffness<Real>(body_.mesh, by_region(materials))) {
     const Index n = conditions_.free_count();
     DenseMatrix<Real> free(n, n);
@@ -32,7 +32,7 @@ class Reference {
 
   /// Sets loads and prescribed values; gravity is in the body frame.
   void set_scene(const Scene& scene, const Vector3& gravity) {
-    conditions_.prescribed = detail::resolve_essential(body_.mesh, boundary_, scene).prescribed;
+    conditions_.prescribed = resolve_essential(body_.mesh, boundary_, scene).prescribed;
     body_.initial_strain = detail::initial_strains_by_region(body_.mesh, scene);
     VectorX f = detail::applied_load(body_, boundary_, scene) + detail::initial_strain_load(body_);
     const VectorX mass = nodal_mass(body_);

@@ -117,7 +117,7 @@ TEST_CASE("the condition estimate is within a factor of ten", "[model][report]")
   const LinearElastic m{5e3, 0.3, 1000.0};
   const Mesh<Tet4> mesh = brick();
   const EssentialConditions c = conditions_of(mesh, brick_scene());
-  const MatrixX lower = MatrixX(detail::free_matrix(assemble_stiffness<Tet4>(body_of(mesh, {m}), {}), c));
+  const MatrixX lower = MatrixX(free_matrix(assemble_stiffness<Tet4>(body_of(mesh, {m}), {}), c));
   const MatrixX k = lower.selfadjointView<Eigen::Lower>();
   const MatrixX inverse = Eigen::LLT<MatrixX>(k).solve(MatrixX::Identity(k.rows(), k.rows()));
   const double exact = k.cwiseAbs().colwise().sum().maxCoeff() * inverse.cwiseAbs().colwise().sum().maxCoeff();

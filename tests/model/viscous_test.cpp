@@ -83,8 +83,8 @@ double stress_of(const LoadCase& load_case, const Mesh<E>& mesh, const Equilibri
 /// Largest relative error over the rows of the table, with `steps` steps between two.
 template <Element E>
 double relaxation_error(const Mesh<E>& mesh, const LoadCase& load_case, Relaxation relaxation, int steps) {
-  Equilibrium body(detail::make_constrained_body(make_body(mesh, cube_material(relaxation)),
-                                                 supports_of(load_case, mesh, applied_strain)));
+  Equilibrium body(
+      make_constrained_body(make_body(mesh, cube_material(relaxation)), supports_of(load_case, mesh, applied_strain)));
   double time = 0.0, worst = 0.0;
   const auto rows = oracle_rows("closed_form_relaxation.csv");
   REQUIRE(rows.size() == 18);
@@ -126,8 +126,8 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
   const auto rows = oracle_rows("closed_form_ramp_creep_harmonic.csv");
   REQUIRE(rows.size() == 18);
   for (const LoadCase& load_case : {sheared, pulled}) {
-    Equilibrium body(detail::make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)),
-                                                   supports_of(load_case, mesh, applied_strain)));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)),
+                                           supports_of(load_case, mesh, applied_strain)));
     const VectorX full = body.conditions().prescribed;
     double time = 0.0;
     for (const auto& row : rows) {
@@ -142,7 +142,7 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
     Scene loaded;
     loaded.prescribe("x0", no_x).prescribe("y0", no_y).prescribe("z0", Components{std::nullopt, std::nullopt, 0.0});
     loaded.traction("x1", {100.0, 0.0, 0.0});
-    Equilibrium body(detail::make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)), loaded));
+    Equilibrium body(make_constrained_body(make_body(mesh, cube_material(Relaxation::whole_stress)), loaded));
     double time = 0.0, worst = 0.0;
     for (const auto& row : rows) {
       const int count = row[0] == 0.0 ? 1 : steps;
@@ -163,8 +163,8 @@ TEST_CASE("a ramp is exact for any step, creep is of second order", "[model][vis
 TEST_CASE("the response to harmonic strain has the complex modulus", "[model][viscous][oracle]") {
   const Mesh<Hex8> mesh = box_hex8({1, 1, 1}, {2, 2, 2});
   const auto error = [&](const std::vector<double>& row, int steps) {
-    Equilibrium body(detail::make_constrained_body(make_body(mesh, cube_material(Relaxation::deviatoric)),
-                                                   supports_of(sheared, mesh, 1.0)));
+    Equilibrium body(
+        make_constrained_body(make_body(mesh, cube_material(Relaxation::deviatoric)), supports_of(sheared, mesh, 1.0)));
     const VectorX full = body.conditions().prescribed;
     const double h = period / row[0] / steps;
     const int still = steps * (1 + static_cast<int>(20.0 * tau * row[0] / period));  // until transients have decayed
@@ -199,8 +199,7 @@ TEST_CASE("each region relaxes with its own time constant", "[model][viscous]") 
   const LinearElastic base{1e4, 0.0, 1000.0};  // in a row: the same force in both
   const auto law = [&](PronyTerm term) { return Cube{base, {{term}}, Relaxation::whole_stress}; };
   const RegionMaterials<Cube> materials{{"left", law({0.5, 0.1})}, {"right", law({0.3, 10.0})}};
-  Equilibrium body(
-      detail::make_constrained_body(make_body(mesh, materials), supports_of(pulled, mesh, applied_strain)));
+  Equilibrium body(make_constrained_body(make_body(mesh, materials), supports_of(pulled, mesh, applied_strain)));
   REQUIRE(body.step(0.0).converged);
   CHECK_THAT(stress_of(pulled, mesh, body), WithinRel(100.0, 1e-9));
   REQUIRE(body.step(infinity).converged);
@@ -238,7 +237,7 @@ TEST_CASE("at small strain both kinematics agree", "[model][viscous]") {
   for (const auto relaxation : {Relaxation::whole_stress, Relaxation::deviatoric}) {
     const double small = 1e-6;
     Equilibrium linear(
-        detail::make_constrained_body(make_body(mesh, cube_material(relaxation)), supports_of(pulled, mesh, small)));
+        make_constrained_body(make_body(mesh, cube_material(relaxation)), supports_of(pulled, mesh, small)));
     Equilibrium large(make_hyperelastic_body(mesh, std::vector{Viscoelastic<NeoHookean, 1>{
                                                        {1e4, 0.45, 1000.0}, {{{share, tau}}}, relaxation}}),
                       supports_of(pulled, mesh, small));
@@ -278,10 +277,10 @@ struct Solid {
   }
 };
 
-detail::DeformableBody solid_body() {
+DeformableBody solid_body() {
   Scene scene;
   scene.prescribe("x0", {0.0, 0.0, 0.0}).prescribe("x1", Components{std::nullopt, 0.0, 0.0});
-  return detail::make_deformable_body(
+  return make_deformable_body(
       make_body(box_hex8({1, 1, 1}, {1, 1, 1}),
                 Cube{LinearElastic{1e4, 0.0, 1000.0}, {{{share, tau}}}, Relaxation::whole_stress}),
       scene);
@@ -331,8 +330,8 @@ TEST_CASE("a refused step does not change the viscoelastic history", "[model][vi
   const Mesh<Tet4> mesh = box_tet4({0.04, 0.04, 0.04}, {2, 2, 2});
   const Viscoelastic<NeoHookean, 1> material{{5e3, 0.45, 1000.0}, {{{0.6, 0.05}}}};
   const auto body = [&] {
-    return detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}),
-                                        Scene().fix("z0").gravity({9.81, 0.0, 0.0}));
+    return make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}),
+                                Scene().fix("z0").gravity({9.81, 0.0, 0.0}));
   };
   ImplicitDynamics one(body(), {}), other(body(), {});
   const VectorX constrained = one.body().conditions.prescribed;
@@ -355,7 +354,7 @@ TEST_CASE("viscoelastic motion dissipates energy and settles in the static equil
     const Viscoelastic<NeoHookean, 2> material{{8e3, 0.4, 1000.0}, {{{0.3, 0.02}, {0.2, 0.2}}}, relaxation};
     Equilibrium statics(make_hyperelastic_body(mesh, std::vector{material}), scene);
     REQUIRE(statics.solve().converged);
-    ImplicitDynamics d(detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene), {});
+    ImplicitDynamics d(make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene), {});
     StepReport report;
     for (int k = 0; k < 400; ++k) report = d.step(0.02);
     REQUIRE(report.newton.converged);
@@ -369,12 +368,11 @@ TEST_CASE("a viscoelastic step allocates nothing; with zero terms it is that of 
   const Scene scene = Scene().fix("z0").gravity({4.0, 0.0, -9.81});
   const NeoHookean base{8e3, 0.4, 1000.0};
   const Viscoelastic<NeoHookean, 1> material{base, {{{0.3, 0.02}}}}, none{base, {{{0.0, 0.02}}}};
-  ImplicitDynamics plain(detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{base}), scene), {});
-  ImplicitDynamics viscous(detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene),
-                           {});
-  ImplicitDynamics idle(detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{none}), scene), {});
+  ImplicitDynamics plain(make_deformable_body(make_hyperelastic_body(mesh, std::vector{base}), scene), {});
+  ImplicitDynamics viscous(make_deformable_body(make_hyperelastic_body(mesh, std::vector{material}), scene), {});
+  ImplicitDynamics idle(make_deformable_body(make_hyperelastic_body(mesh, std::vector{none}), scene), {});
   ImplicitDynamics small(
-      detail::make_deformable_body(make_body(mesh, Cube{LinearElastic{8e3, 0.4, 1000.0}, {{{0.3, 0.02}}}}), scene), {});
+      make_deformable_body(make_body(mesh, Cube{LinearElastic{8e3, 0.4, 1000.0}, {{{0.3, 0.02}}}}), scene), {});
   const testing::AllocationScope scope;
   for (int k = 0; k < 20; ++k)
     for (ImplicitDynamics* d : {&plain, &viscous, &idle, &small}) d->step(0.005);
@@ -405,17 +403,16 @@ TEST_CASE("viscoelastic bodies refuse unsupported set-ups", "[model][viscous]") 
   const Muscle whole{fibrous, {{{0.5, 1.0}}}, Relaxation::whole_stress},
       shape{fibrous, {{{0.5, 1.0}}}, Relaxation::deviatoric};
   const Scene constrained = Scene().fix("z0");
-  CHECK(kind([&] { detail::make_constrained_body(make_body(mesh, whole), constrained); }) == SetupErrorKind::cancelled);
-  CHECK(kind([&] { detail::make_constrained_body(make_body(mesh, shape), constrained); }) ==
-        SetupErrorKind::unsupported);
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, whole), constrained); }) == SetupErrorKind::cancelled);
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, shape), constrained); }) == SetupErrorKind::unsupported);
   const Cube cube = cube_material(Relaxation::whole_stress);
-  CHECK(kind([&] { detail::make_constrained_body(make_body(mesh, cube), Scene()); }) == SetupErrorKind::unconstrained);
+  CHECK(kind([&] { make_constrained_body(make_body(mesh, cube), Scene()); }) == SetupErrorKind::unconstrained);
   CHECK(kind([&] {
           Scene expanding = constrained;
-          detail::make_constrained_body(make_body(mesh, cube), expanding.expand(std::string(everywhere), 0.01));
+          make_constrained_body(make_body(mesh, cube), expanding.expand(std::string(everywhere), 0.01));
         }) == SetupErrorKind::unsupported);
   CHECK(kind([&] { make_body(mesh, Cube{cube.base, {{{1.5, 1.0}}}}); }) == SetupErrorKind::bad_argument);
-  Equilibrium body(detail::make_constrained_body(make_body(mesh, cube), constrained));
+  Equilibrium body(make_constrained_body(make_body(mesh, cube), constrained));
   for (const double dt : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     CHECK(kind([&] { body.step(dt); }) == SetupErrorKind::bad_argument);
 }
@@ -429,7 +426,7 @@ double disturbance_of_swollen_cube(const Viscoelastic<NeoHookean, 1>& law) {
   const auto mesh = promote<Tet10>(box_tet4({edge, edge, edge}, {2, 2, 2}, BoxSplit::six));
   Scene scene;
   for (const char* face : {"x0", "x1", "y0", "y1", "z0", "z1"}) scene.fix(face);
-  ImplicitDynamics motion(detail::make_deformable_body(make_hyperelastic_body(mesh, std::vector{law}), scene));
+  ImplicitDynamics motion(make_deformable_body(make_hyperelastic_body(mesh, std::vector{law}), scene));
   VectorX u(3 * mesh.node_count()), v(u.size());
   for (Index i = 0; i < mesh.node_count(); ++i) u.segment<3>(3 * i) = (stretch - 1.0) * mesh.position(i);
   testing::Random random(3);

@@ -42,8 +42,6 @@ struct EssentialConditions {
   }
 };
 
-namespace detail {
-
 /// Resolves the prescribed conditions of a scene. Throws unknown_group, empty_group, or conflicting_conditions when
 /// one dof has two different values.
 inline EssentialConditions resolve_essential(const MeshRef& mesh, const std::vector<BoundaryFace>& boundary,
@@ -59,10 +57,10 @@ inline EssentialConditions resolve_essential(const MeshRef& mesh, const std::vec
         auto& bits = c.constrained[static_cast<std::size_t>(node)];
         const Index dof = 3 * Index{node} + i;
         if ((bits & (1u << i)) != 0 && c.prescribed[dof] != *value)
-          raise_at(SetupIds::nodes, node, SetupErrorKind::conflicting_conditions,
-                   std::string("component ") + "xyz"[i] + " of a node is prescribed as " + number(c.prescribed[dof]) +
-                       " and as " + number(*value),
-                   "Prescribe one value per component");
+          detail::raise_at(SetupIds::nodes, node, SetupErrorKind::conflicting_conditions,
+                           std::string("component ") + "xyz"[i] + " of a node is prescribed as " +
+                               number(c.prescribed[dof]) + " and as " + number(*value),
+                           "Prescribe one value per component");
         bits = static_cast<std::uint8_t>(bits | (1u << i));
         c.prescribed[dof] = *value;
       }
@@ -80,10 +78,5 @@ EssentialConditions resolve_essential(const Mesh<E>& mesh, const std::vector<Bou
                                       const Scene& scene) {
   return resolve_essential(mesh_ref(mesh), boundary, scene);
 }
-
-}  // namespace detail
-
-// For programs: documented in docs/dynamics.md.
-using detail::resolve_essential;
 
 }}  // namespace palpate

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/integrator.hpp>
@@ -103,7 +103,7 @@ struct PointHistory<M, Points> {
 /// integration point, plus the viscoelastic history. Vectors have 3 entries per node, all dofs. Only the constructor
 /// allocates; sums run by element, so results do not depend on threads.
 template <Element E, LargeStrainMaterial M>
-class LargeStrain final : public detail::ElasticForces {
+class LargeStrain final : public ElasticForces {
  public:
   static_assert(!detail::HasSmoothedStrain<E> && !detail::HasMeanDilatation<E>,
                 "palpate: Smoothed and MeanDilatation average small strains; choose Tet10 or Hex20, or "

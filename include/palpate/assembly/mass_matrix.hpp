@@ -4,7 +4,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
@@ -92,13 +92,11 @@ VectorX lumped_mass(const Body<E>& body) {
   return mass;
 }
 
-namespace detail {
-
 /// Calls visit(row, column, value) for every stored entry of the lower half of the mass of the free dofs, rows
 /// ascending within a column; used by free_matrix.
 template <class Visit>
-void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditions, Visit&& visit) {
-  const BlockPattern& pattern = m.pattern();
+void for_each_free_entry(const detail::MassMatrix& m, const EssentialConditions& conditions, Visit&& visit) {
+  const detail::BlockPattern& pattern = m.pattern();
   const auto free = [&](Index node, Index c) { return conditions.free_index[static_cast<std::size_t>(3 * node + c)]; };
   for (Index i = 0; i < pattern.rows(); ++i)
     for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
@@ -108,6 +106,8 @@ void for_each_free_entry(const MassMatrix& m, const EssentialConditions& conditi
         if (row >= 0 && column >= 0) visit(row, column, m[p]);
       }
 }
+
+namespace detail {
 
 inline void MassMatrix::apply(const VectorX& x, VectorX& y) const noexcept {
   y.setZero();

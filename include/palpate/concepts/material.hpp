@@ -59,14 +59,14 @@ concept FibreMaterial = LinearMaterial<M> && requires(const M& m, const Vector3&
 template <class M>
 concept HyperelasticMaterial =
     Material<M> && requires(const M& m, const Tensor3<double>& f, const Tensor3<float>& single,
-                            const Tensor3<detail::Lanes<double, 8>>& lanes, const Tensor3<detail::Lanes<float, 16>>& single_lanes) {
+                            const Tensor3<Lanes<double, 8>>& lanes, const Tensor3<Lanes<float, 16>>& single_lanes) {
       requires std::same_as<std::remove_cvref_t<decltype(M::survives_inversion)>, bool>;
       { m.energy(f) } -> std::same_as<double>;
       { m.energy(single) } -> std::same_as<float>;
       { m.stress(f) } -> std::same_as<Tensor3<double>>;
       { m.stress(single) } -> std::same_as<Tensor3<float>>;
-      { m.stress(lanes) } -> std::same_as<Tensor3<detail::Lanes<double, 8>>>;
-      { m.stress(single_lanes) } -> std::same_as<Tensor3<detail::Lanes<float, 16>>>;
+      { m.stress(lanes) } -> std::same_as<Tensor3<Lanes<double, 8>>>;
+      { m.stress(single_lanes) } -> std::same_as<Tensor3<Lanes<float, 16>>>;
       { m.tangent(f) } -> FixedMatrix<9, 9>;
       { m.rest_elasticity() } -> FixedMatrix<6, 6>;
       { m.admits(f) } -> std::same_as<bool>;
@@ -77,11 +77,11 @@ concept HyperelasticMaterial =
 template <class M>
 concept FibreHyperelasticMaterial =
     HyperelasticMaterial<M> &&
-    requires(const M& m, const Tensor3<double>& f, const Triple<double>& fibre, const Tensor3<detail::Lanes<float, 16>>& lanes,
-             const Triple<detail::Lanes<float, 16>>& fibres) {
+    requires(const M& m, const Tensor3<double>& f, const Triple<double>& fibre, const Tensor3<Lanes<float, 16>>& lanes,
+             const Triple<Lanes<float, 16>>& fibres) {
       { m.energy(f, fibre) } -> std::same_as<double>;
       { m.stress(f, fibre) } -> std::same_as<Tensor3<double>>;
-      { m.stress(lanes, fibres) } -> std::same_as<Tensor3<detail::Lanes<float, 16>>>;
+      { m.stress(lanes, fibres) } -> std::same_as<Tensor3<Lanes<float, 16>>>;
       { m.tangent(f, fibre) } -> FixedMatrix<9, 9>;
       { m.rest_elasticity(fibre) } -> FixedMatrix<6, 6>;
       { m.admits(f, fibre) } -> std::same_as<bool>;

@@ -67,7 +67,7 @@ class TissueAdaptor {
   auto report_slow(bool slow) noexcept { return tissue_->report_slow(slow); }
   auto report_failed(bool failed) noexcept { return tissue_->report_failed(failed); }
 
-  detail::TissueClaim& claim() noexcept requires requires(Tissue& t) { t.claim(); }
+  TissueClaim& claim() noexcept requires requires(Tissue& t) { t.claim(); }
   { return tissue_->claim(); }
   std::vector<std::string> notes() const requires requires(const Tissue& t) { t.notes(); }
   { return tissue().notes(); }

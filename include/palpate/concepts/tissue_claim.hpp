@@ -7,11 +7,11 @@
 #include <atomic>
 #include <memory>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
 
-/// Whether a servo uses a tissue that can have one only: its surface or compliance changes between ticks, and the forces
-/// that a tick leaves replace those of the last one. A tissue with a function `TissueClaim& claim() noexcept` is refused to a
-/// second servo. Adaptors forward that of the wrapped tissue.
+/// Whether a servo uses a tissue that can have one only: its surface or compliance changes between ticks, and the
+/// forces that a tick leaves replace those of the last one. A tissue with a function `TissueClaim& claim() noexcept` is
+/// refused to a second servo. Adaptors forward that of the wrapped tissue.
 class TissueClaim {
  public:
   using Taken = std::shared_ptr<std::atomic<bool>>;
@@ -30,6 +30,8 @@ class TissueClaim {
   Taken taken_ = std::make_shared<std::atomic<bool>>(false);
 };
 
+namespace detail {
+
 /// Holds the claim on a tissue, if it has one, during its lifetime.
 class ClaimedTissue {
  public:
@@ -46,8 +48,5 @@ class ClaimedTissue {
 };
 
 }  // namespace detail
-
-// For tissues of your own (TissueModel).
-using detail::TissueClaim;
 
 }}  // namespace palpate

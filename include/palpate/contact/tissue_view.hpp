@@ -229,9 +229,7 @@ class TissueView {
   Matrix3 half_space_map_at(const detail::ContactSample& point) const noexcept;
 
   /// Null for a tissue that several servos may use.
-  detail::TissueClaim* claim() const noexcept {
-    return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr;
-  }
+  TissueClaim* claim() const noexcept { return functions_->claim != nullptr ? functions_->claim(tissue_) : nullptr; }
   /// What the set-up of the tissue reports, one sentence each. Allocates.
   std::vector<std::string> notes() const {
     return functions_->notes != nullptr ? functions_->notes(tissue_) : std::vector<std::string>{};

@@ -137,7 +137,7 @@ class CuttableMovingTissue : public MovingTissue {
   void set_up_cuts(HyperelasticBody<E, M> body, const std::vector<BoundaryFace>& boundary,
                    const detail::Touchable& touchable, const QuasiNewtonParameters& parameters) {
     const Mesh<E>& mesh = body.rest.mesh;
-    CutTopology<E> topology(mesh, detail::resolve_essential(mesh, boundary, scene()).constrained);
+    CutTopology<E> topology(mesh, resolve_essential(mesh, boundary, scene()).constrained);
     if (topology.mesh().node_count() > mesh.node_count())
       raise(SetupErrorKind::unsupported, "a mesh whose parts touch only at nodes or edges",
             "Give each part its own nodes there");

@@ -191,7 +191,7 @@ class CuttableTissue : public ModelBase {
   NoHook report_slow(bool) noexcept { return {}; }
   void report_failed(bool failed) noexcept { served_.report_failed(failed); }
   /// One servo at a time: a cut moves its contacts to the new surface.
-  detail::TissueClaim& claim() noexcept { return claim_; }
+  TissueClaim& claim() noexcept { return claim_; }
 
  protected:
   explicit CuttableTissue(const SetupOptions& options) : ModelBase(options) {
@@ -239,7 +239,7 @@ class CuttableTissue : public ModelBase {
   mutable std::mutex changes_;
   detail::CutOrders orders_;
   detail::CutServed served_;
-  detail::TissueClaim claim_;
+  TissueClaim claim_;
   std::atomic<bool> failed_{false};
   TripleBuffer<detail::CutView> views_;
   std::uint64_t revision_ = 0;  // the last one seen by a tick

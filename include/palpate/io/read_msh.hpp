@@ -48,12 +48,6 @@ Mesh<E> read_msh(const std::string& path, const ReadOptions& options = {}) {
   return build_mesh<E>(gmsh::parse(read_file(path), path, options.labels), options.scale, options.numbering);
 }
 
-/// The same with scale and numbering as arguments.
-template <Element E>
-Mesh<E> read_msh(const std::string& path, double scale, MeshNumbering* numbering = nullptr) {
-  return read_msh<E>(path, ReadOptions{scale, numbering, {}});
-}
-
 }}}  // namespace palpate::PALPATE_ABI::io
 
 #if PALPATE_HEADER_ONLY

@@ -10,10 +10,10 @@
 #include <palpate/model/cache/cache_file.hpp>
 #include <palpate/model/force_error_options.hpp>
 #include <palpate/model/setup_report.hpp>
-#include <palpate/model/static/detail/contact_compliance.hpp>
 
 #include <Eigen/Geometry>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -28,6 +28,14 @@ struct AdmittedBody;
 struct Touchable;
 
 }  // namespace detail
+
+/// When a solver that does not store the whole compliance computes a column.
+enum class ColumnFill : std::uint8_t {
+  automatic,    ///< synchronous when a column is cheap, asynchronous when it would delay a tick
+  synchronous,  ///< in the tick that first needs it: exact in every tick; the duration of a tick is not bounded
+  asynchronous  ///< in a background thread, for all vertices near a tool; a tick without a needed column reports
+                ///< degraded_model
+};
 
 /// Options for the set-up of any model.
 struct SetupOptions {

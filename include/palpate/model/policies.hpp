@@ -170,6 +170,18 @@ concept SolverPolicy = requires {
   { SolverTraits<P>::eager } -> std::convertible_to<bool>;
 };
 
+/// A policy whose prepared system can be stored: `cache_name` is unique, the system has `write`, and `read` restores it
+/// from the written data, given the same stiffness, conditions and layout. `read` takes every size from these arguments
+/// and none from the file; its result is unspecified when the reader fails.
+template <class P>
+concept CacheablePolicy = SolverPolicy<P> &&
+    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
+             const DofLayout& layout, const SetupLimits& limits) {
+  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
+  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
+  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
+};
+
 }}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY

@@ -3,7 +3,7 @@
 
 #include <palpate/model/policies.hpp>
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/condensation/detail/schur.hpp>
 #include <palpate/condensation/static_systems.hpp>
 #include <palpate/core/binary_io.hpp>
@@ -21,7 +21,7 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::make(const BlockMatrix&
                                                               const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});  // requested, but nothing is condensed onto them
-  const detail::SparseMatrix lower = detail::free_matrix(k, conditions);
+  const SparseMatrix lower = free_matrix(k, conditions);
   return {SparseCholesky(detail::CholeskyAnalysis(lower, layout, limits), lower, limits), std::move(kept)};
 }
 
@@ -30,7 +30,7 @@ PALPATE_INLINE Uncondensed SolverTraits<SparseCholesky>::read(BinaryReader& in, 
                                                               const DofLayout& given, const SetupLimits& limits) {
   DofLayout layout = given;
   std::vector<Index> kept = std::exchange(layout.kept, {});
-  const detail::SparseMatrix lower = detail::free_matrix(k, conditions);
+  const SparseMatrix lower = free_matrix(k, conditions);
   return {SparseCholesky::read(in, detail::CholeskyAnalysis(lower, layout, limits), false, limits), std::move(kept)};
 }
 

@@ -1,7 +1,7 @@
 // Statics, a factorisation, a contact force through the gate: a few numbers, printed, and compared with the arguments.
 // Returns 1 when one differs by more than rounding, or when the gate outputs a force that it must not.
 #include <palpate/assembly/assembled.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/haptic/force_gate.hpp>
@@ -20,8 +20,8 @@ namespace {
 std::array<double, 2> statics() {
   const auto mesh = box_tet4({0.1, 0.08, 0.06}, {4, 3, 3});
   const auto body = make_body(mesh, std::vector<LinearElastic>{{5e3, 0.45, 1000.0}});
-  const auto conditions = detail::resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), Scene().fix("x0"));
-  const detail::SparseMatrix lower = detail::free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
+  const auto conditions = resolve_essential(body.mesh, extract_boundary<Tet4>(body.mesh), Scene().fix("x0"));
+  const SparseMatrix lower = free_matrix(assemble_stiffness<Tet4>(body, {}), conditions);
   DofLayout layout;
   layout.positions = mesh.positions;
   for (Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);

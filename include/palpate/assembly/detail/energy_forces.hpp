@@ -1,7 +1,7 @@
 // Energy and force of an elastic body, for methods that need no tangent.
 #pragma once
 
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/concepts/integrator.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>

@@ -5,7 +5,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/condensation/detail/schur.hpp>

@@ -12,7 +12,7 @@
 #include <palpate/element/wrappers.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/local/mass.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/renewable_factor.hpp>
 #include <palpate/model/moving/detail/renewal_thread.hpp>
 #include <palpate/model/moving/detail/step_factor.hpp>

@@ -91,7 +91,7 @@ requires(!detail::HasSmoothedStrain<E>) struct CutPhysics : detail::ElementLoads
   CutPhysics(Body<E> given, const std::vector<BoundaryFace>& boundary, const Scene& scene)
       : detail::ElementLoads<E>(given.mesh, boundary, scene), body(std::move(given)) {
     body.initial_strain = detail::initial_strains_by_region(body.mesh, scene);
-    prescribed = detail::resolve_essential(body.mesh, boundary, scene).prescribed;
+    prescribed = resolve_essential(body.mesh, boundary, scene).prescribed;
     add_weight(scene);
   }
 

@@ -3,7 +3,7 @@
 
 #include <palpate/model/cache/cache_file.hpp>
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/linear/condition.hpp>
 #include <palpate/model/cache/detail/prepared_cache.hpp>
 #include <palpate/model/detail/elastic_body.hpp>

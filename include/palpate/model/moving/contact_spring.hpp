@@ -11,12 +11,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-namespace detail {
-
 /// Maximum number of springs of a motion.
 inline constexpr std::size_t most_springs = 2048;
-
-}  // namespace detail
 
 /// A spring that pushes a point of the surface along a direction, and pulls it only where a tool holds it.
 struct ContactSpring {
@@ -64,8 +60,5 @@ inline double add_pushes(std::span<const ContactSpring> springs, const VectorX& 
 }
 
 }  // namespace detail
-
-// For motions of your own (TissueMotion::set_springs).
-using detail::most_springs;
 
 }}  // namespace palpate

@@ -16,7 +16,7 @@
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/scene.hpp>
 #include <palpate/mesh/surface.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 
 #include <algorithm>
@@ -162,9 +162,9 @@ class Equilibrium {
   /// unconstrained.
   template <Element E, LargeStrainMaterial M>
   Equilibrium(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {})
-      : Equilibrium(detail::make_constrained_body(std::move(body), scene, limits), limits) {}
+      : Equilibrium(make_constrained_body(std::move(body), scene, limits), limits) {}
   /// From a constrained body of an admitted mesh, with or without mass, at small or large strain.
-  explicit Equilibrium(detail::DeformableBody body, const SetupLimits& limits = {});
+  explicit Equilibrium(DeformableBody body, const SetupLimits& limits = {});
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
@@ -193,7 +193,7 @@ class Equilibrium {
   VectorX reactions() const;
   /// Moves the body out; no other function may be called afterwards. Positions of a body made from a mesh are relative
   /// to the centre of its bounding box.
-  detail::DeformableBody release() &&;
+  DeformableBody release() &&;
 
   // NewtonProblem, at the present loads
   Index size() const noexcept { return body_.conditions.free_count(); }
@@ -208,7 +208,7 @@ class Equilibrium {
 
  private:
   struct Prepared {
-    detail::DeformableBody body;
+    DeformableBody body;
     OriginalIds ids;
     std::vector<NodeId> node_map;
   };
@@ -223,10 +223,10 @@ class Equilibrium {
     for (Vector3& x : admitted.mesh.positions) x -= origin;
     const Scene mapped = scene.mapped(prepared.node_map, origin);
     detail::require_constrained(
-        admitted.mesh, detail::resolve_essential(admitted.mesh, extract_boundary<E>(admitted.mesh), mapped).constrained,
+        admitted.mesh, resolve_essential(admitted.mesh, extract_boundary<E>(admitted.mesh), mapped).constrained,
         origin);
-    prepared.body = detail::make_constrained_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped,
-                                                  options.limits);
+    prepared.body =
+        make_constrained_body(detail::make_any_body(std::move(admitted.mesh), materials), mapped, options.limits);
     return prepared;
   }
   Equilibrium(Prepared prepared, const SetupLimits& limits);
@@ -256,7 +256,7 @@ class Equilibrium {
 
   OriginalIds ids_;
   std::vector<NodeId> node_map_;
-  detail::DeformableBody body_;
+  DeformableBody body_;
   detail::TangentSolver tangent_;
   VectorX displacement_, force_, full_, prescribed_, load_, from_prescribed_, from_load_;
   ProximalDescent descent_;

@@ -81,7 +81,7 @@ PALPATE_INLINE Equilibrium::Equilibrium(Prepared& prepared, const SetupLimits& l
   node_map_ = std::move(prepared.node_map);
 }
 
-PALPATE_INLINE Equilibrium::Equilibrium(detail::DeformableBody body, const SetupLimits& limits)
+PALPATE_INLINE Equilibrium::Equilibrium(DeformableBody body, const SetupLimits& limits)
     : body_(std::move(body)),
       tangent_(body_.pattern, body_.conditions, body_.positions, limits),
       displacement_(VectorX::Zero(body_.elastic->size())),
@@ -153,7 +153,7 @@ PALPATE_INLINE VectorX Equilibrium::reactions() const {
   return r;
 }
 
-PALPATE_INLINE detail::DeformableBody Equilibrium::release() && {
+PALPATE_INLINE DeformableBody Equilibrium::release() && {
   end();
   return std::move(body_);
 }

@@ -1,10 +1,10 @@
 // A solver policy for dynamics with explicit time steps: Explicit<CentralDifference>.
 #pragma once
 
-#include <palpate/assembly/detail/batched_tetrahedra.hpp>
-#include <palpate/assembly/detail/elastic_forces.hpp>
-#include <palpate/assembly/detail/element_frequency.hpp>
-#include <palpate/assembly/detail/viscous_forces.hpp>
+#include <palpate/assembly/batched_tetrahedra.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
+#include <palpate/assembly/element_frequency.hpp>
+#include <palpate/assembly/viscous_forces.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/integrator/explicit_motion.hpp>
 #include <palpate/integrator/explicit_schemes.hpp>
@@ -190,12 +190,12 @@ struct SolverTraits<Explicit<Scheme>> {
     made.large_strain = !made.accepts_initial_strains;
     made.start = VectorX::Zero(3 * rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(detail::make_constrained_body(body, scene, limits), limits);
+      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
-    const auto conditions = detail::resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);
+    const auto conditions = resolve_essential(rest.mesh, extract_boundary<E>(rest.mesh), scene);
     const VectorX lumped = lumped_mass(rest);
-    const double bound = detail::element_frequency_bound(rest);
+    const double bound = element_frequency_bound(rest);
     made.motion = make(make_force(std::move(body), limits), lumped, conditions, bound, p);
     return made;
   }
@@ -208,7 +208,7 @@ struct SolverTraits<Explicit<Scheme>> {
   template <HyperelasticMaterial M>
   static auto make_force(HyperelasticBody<Tet4, M> body, const SetupLimits& limits) {
     detail::require_no_fibres(body);
-    return detail::BatchedTetrahedra<M>(body, limits);
+    return BatchedTetrahedra<M>(body, limits);
   }
   template <Element E, LargeStrainMaterial M>
   static auto make_force(HyperelasticBody<E, M> body, const SetupLimits& limits) {
@@ -216,7 +216,7 @@ struct SolverTraits<Explicit<Scheme>> {
   }
   template <Element E>
   static auto make_force(Body<E> body, const SetupLimits& limits) {
-    return detail::LinearForces(assemble_stiffness<E>(body, limits));
+    return LinearForces(assemble_stiffness<E>(body, limits));
   }
 };
 

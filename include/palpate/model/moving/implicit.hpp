@@ -89,11 +89,11 @@ struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
     constexpr bool is_linear = requires {
       body.mesh;
     };
-    return prepare(detail::make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
+    return prepare(make_deformable_body(std::move(body), scene, limits), is_linear, p, limits);
   }
 
  private:
-  static PreparedMotion prepare(detail::DeformableBody body, bool is_linear, const Parameters& parameters,
+  static PreparedMotion prepare(DeformableBody body, bool is_linear, const Parameters& parameters,
                                 const SetupLimits& limits);
 };
 
@@ -163,7 +163,7 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
     made.large_strain = true;
     made.start = VectorX::Zero(3 * body.rest.mesh.node_count());
     if (p.settle) {
-      Equilibrium statics(detail::make_constrained_body(body, scene, limits), limits);
+      Equilibrium statics(make_constrained_body(body, scene, limits), limits);
       made.start = detail::settled(statics);
     }
     const detail::CorotatedMotionOptions options{
@@ -175,8 +175,8 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
   }
 };
 
-inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(detail::DeformableBody body,
-                                                                              bool is_linear, const Parameters& p,
+inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(DeformableBody body, bool is_linear,
+                                                                              const Parameters& p,
                                                                               const SetupLimits& limits) {
   PreparedMotion made;
   made.accepts_initial_strains = is_linear;

@@ -8,7 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/integrator/newton.hpp>
 #include <palpate/integrator/time_scheme.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/contact_spring.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 
@@ -45,7 +45,7 @@ class ImplicitDynamics {
  public:
   /// Starts at rest with zero displacement; the initial acceleration follows from the loads. Throws too_large,
   /// bad_density when a free node has no mass, bad_argument for negative damping and invalid parameters.
-  explicit ImplicitDynamics(detail::DeformableBody body, const DynamicsParameters& parameters = {},
+  explicit ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters = {},
                             const SetupLimits& limits = {});
   ImplicitDynamics(const ImplicitDynamics&) = delete;
   ImplicitDynamics& operator=(const ImplicitDynamics&) = delete;
@@ -68,7 +68,7 @@ class ImplicitDynamics {
   const VectorX& displacement() const noexcept { return u_; }
   const VectorX& velocity() const noexcept { return v_; }
   const VectorX& acceleration() const noexcept { return a_; }
-  const detail::DeformableBody& body() const noexcept { return body_; }
+  const DeformableBody& body() const noexcept { return body_; }
 
   /// Sets the state; prescribed components take their prescribed values with zero velocity. The acceleration follows
   /// from the forces. For a viscoelastic body the change is sudden. Throws bad_argument, without a change, for vectors
@@ -113,7 +113,7 @@ class ImplicitDynamics {
   bool prepare_at(const VectorX& u) noexcept;
   void add_springs(const VectorX& u, BlockMatrix& k) const noexcept;
 
-  static detail::DeformableBody checked(detail::DeformableBody body, const DynamicsParameters& p);
+  static DeformableBody checked(DeformableBody body, const DynamicsParameters& p);
 
   /// Sets x_ to the predicted or the current state, whichever has the lower potential of the step.
   void start_from_the_lower() noexcept;
@@ -144,7 +144,7 @@ class ImplicitDynamics {
   void find_acceleration();
 
   DynamicsParameters parameters_;
-  detail::DeformableBody body_;
+  DeformableBody body_;
   detail::TangentSolver tangent_;
   detail::ImplicitStep step_;
   BlockMatrix damping_;

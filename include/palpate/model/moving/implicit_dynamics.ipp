@@ -12,7 +12,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(detail::DeformableBody body, const DynamicsParameters& parameters,
+PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(DeformableBody body, const DynamicsParameters& parameters,
                                                   const SetupLimits& limits)
     : parameters_(parameters),
       body_(checked(std::move(body), parameters)),
@@ -38,7 +38,7 @@ PALPATE_INLINE ImplicitDynamics::ImplicitDynamics(detail::DeformableBody body, c
       start_(size()),
       heaviest_(body_.lumped.maxCoeff()),
       small_(std::sqrt(std::numeric_limits<double>::epsilon()) * detail::extent(body_.positions)) {
-  springs_.reserve(detail::most_springs);
+  springs_.reserve(most_springs);
   body_.elastic->tangent(u_, tangent_.matrix());
   if (!body_.elastic->is_linear()) floor_ = tangent_.rounding(detail::extent(body_.positions));
   find_acceleration();
@@ -217,8 +217,7 @@ PALPATE_INLINE void ImplicitDynamics::add_springs(const VectorX& u, BlockMatrix&
   }
 }
 
-PALPATE_INLINE detail::DeformableBody ImplicitDynamics::checked(detail::DeformableBody body,
-                                                                const DynamicsParameters& p) {
+PALPATE_INLINE DeformableBody ImplicitDynamics::checked(DeformableBody body, const DynamicsParameters& p) {
   p.newton.require_usable();
   detail::require_damping(p.mass_damping, p.stiffness_damping);
   detail::require_mass(body);

@@ -4,7 +4,7 @@
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/concepts/mesh.hpp>
 #include <palpate/model/detail/admitted_mesh.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/moving/moving_tissue.hpp>

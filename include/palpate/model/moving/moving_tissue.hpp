@@ -144,7 +144,7 @@ class MovingTissue : public ModelBase {
   void prepare_tools(const ToolRadii&, const ContactParameters&);
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   /// One servo at a time: its forces load the next step.
-  detail::TissueClaim& claim() noexcept { return claim_; }
+  TissueClaim& claim() noexcept { return claim_; }
 
  protected:
   explicit MovingTissue(const SetupOptions& options);
@@ -293,7 +293,7 @@ class MovingTissue : public ModelBase {
   std::uint64_t steps_ = 0;
   std::mutex changes_;
   std::atomic<bool> slow_{false}, failed_work_{false};
-  detail::TissueClaim claim_;
+  TissueClaim claim_;
   TripleBuffer<View> views_;
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;

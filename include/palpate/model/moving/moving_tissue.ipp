@@ -173,7 +173,7 @@ PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
 PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
-  static_assert(detail::ContactSprings::most_per_point * most_points <= detail::most_springs);
+  static_assert(detail::ContactSprings::most_per_point * most_points <= most_springs);
   springs_.clear();
   if (!takes_springs_) return;
   if (forces.points > 0 && forces.number == changed_.number) {

@@ -50,7 +50,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
   static PreparedMotion make_motion(HyperelasticBody<E, M> body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
     detail::refuse_initial_strains(scene);
-    detail::DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
+    DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
     if (p.large_strain_within != infinity) {
       p.require_divisible(ViscousMaterial<M>);
       const MeshRef mesh = mesh_ref(body.rest.mesh);
@@ -88,7 +88,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
     };
   }
   template <Element E, LargeStrainMaterial M>
-  static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, detail::DeformableBody made,
+  static PreparedMotion make_partly_linear(const HyperelasticBody<E, M>& body, DeformableBody made,
                                            detail::BodyParts parts, const Parameters& p, const SetupLimits& limits) {
     detail::require_mass(made);
     std::unique_ptr<detail::LinearSurroundings> surroundings;

@@ -12,7 +12,7 @@
 #include <palpate/element/tet4.hpp>
 #include <palpate/local/geometry.hpp>
 #include <palpate/local/isotropic.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 #include <palpate/model/moving/detail/renewal_thread.hpp>
 #include <palpate/model/moving/step_preconditioners.hpp>
@@ -30,7 +30,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// first after the factors of M and K have changed, which factorises at rest. Stores two factors.
 class RenewedFactor {
  public:
-  RenewedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
+  RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits);
 
   template <class Tetrahedra>
   void update(const Tetrahedra&, const detail::StepFactors& factors, const VectorX& u, bool again) noexcept {
@@ -62,7 +62,7 @@ class RenewedFactor {
     detail::LameConstants material;
   };
   struct Made {
-    Made(const detail::DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
+    Made(const DeformableBody& body, const EssentialConditions& conditions, const SetupLimits& limits)
         : factor(std::make_unique<detail::TangentSolver>(body.pattern, conditions, body.positions, limits)),
           rotation(body.positions.size(), Matrix3::Identity()) {}
     std::unique_ptr<detail::TangentSolver> factor;
@@ -90,8 +90,7 @@ class RenewedFactor {
   detail::RenewalThread thread_;  // last: it uses all other members
 };
 
-inline RenewedFactor::RenewedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest,
-                                    const SetupLimits& limits)
+inline RenewedFactor::RenewedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
     : corotated_(body),
       lumped_(body.lumped),
       made_{{Made(body, corotated_.conditions(), limits), Made(body, corotated_.conditions(), limits)}},

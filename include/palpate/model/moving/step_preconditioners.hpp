@@ -9,7 +9,7 @@
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/element/tet4.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 
@@ -35,8 +35,9 @@ struct StepFactors {
 // clang-format off
 template <class P, class Tetrahedra>
 concept StepPreconditioner =
-    std::constructible_from<P, const detail::DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
-    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const detail::StepFactors& factors, const VectorX& u, VectorX& z) {
+    std::constructible_from<P, const DeformableBody&, const Body<Tet4>&, const SetupLimits&> &&
+    requires(P& p, const P& fixed, const Tetrahedra& tetrahedra, const detail::StepFactors& factors, const VectorX& u,
+             VectorX& z) {
       { p.update(tetrahedra, factors, u, true) } noexcept;
       { fixed.apply(u, z) } noexcept;
     };
@@ -45,7 +46,7 @@ concept StepPreconditioner =
 /// The inverse 3 x 3 diagonal blocks of A, updated when due. One block product per node and application.
 class BlockJacobi {
  public:
-  BlockJacobi(const detail::DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
+  BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&);
 
   template <class Tetrahedra>
   void update(const Tetrahedra& tetrahedra, const detail::StepFactors& factors, const VectorX&, bool again) noexcept {
@@ -76,7 +77,7 @@ class BlockJacobi {
 /// again when the factors of M and K change, which takes unbounded time; rotations are fitted in every step.
 class CorotatedFactor {
  public:
-  CorotatedFactor(const detail::DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
+  CorotatedFactor(const DeformableBody& body, const Body<Tet4>& rest, const SetupLimits& limits)
       : corotated_(body),
         lumped_(body.lumped),
         stiffness_(assemble_stiffness<Tet4>(rest, limits)),
@@ -106,7 +107,7 @@ class CorotatedFactor {
   detail::StepFactors factors_;
 };
 
-inline BlockJacobi::BlockJacobi(const detail::DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
+inline BlockJacobi::BlockJacobi(const DeformableBody& body, const Body<Tet4>&, const SetupLimits&)
     : lumped_(body.lumped),
       constrained_(body.conditions.constrained),
       straight_(3 * lumped_.size()),

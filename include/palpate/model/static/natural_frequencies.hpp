@@ -4,7 +4,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/body.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/assembly/mass_matrix.hpp>
 #include <palpate/concepts/element.hpp>
@@ -191,13 +191,13 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
                                        const SetupLimits& limits = {}) {
   constexpr double tolerance = 1e-9;  // of theta; the error of a frequency is of the order of its square
   detail::require_density(body);
-  const EssentialConditions conditions = detail::resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
+  const EssentialConditions conditions = resolve_essential(body.mesh, extract_boundary<E>(body.mesh), scene);
   const MatrixX rigid_motions = detail::rigid_displacements(body.mesh, conditions.constrained);
   detail::require_count(count, conditions.free_count() - rigid_motions.cols());
   limits.require_memory(detail::BlockLanczos::bytes(conditions.free_count(), rigid_motions.cols(), count), "the modes");
 
-  detail::ModalProblem problem{detail::free_matrix(assemble_stiffness<E>(body, limits), conditions),
-                               detail::free_matrix(assemble_mass<E>(body, limits), conditions),
+  detail::ModalProblem problem{free_matrix(assemble_stiffness<E>(body, limits), conditions),
+                               free_matrix(assemble_mass<E>(body, limits), conditions),
                                rigid_motions(conditions.free_dofs, Eigen::all)};
   const bool constrained = problem.rigid.cols() == 0;
   double shift = constrained ? 0.0 : -1e-2 * detail::uniform_strain_quotient(body, conditions, problem);
@@ -207,7 +207,7 @@ NaturalFrequencies natural_frequencies(const Body<E>& body, const Scene& scene, 
     if (attempt > 0)
       shift = -1e-2 * lambda.cwiseAbs().minCoeff();  // far below the uniform strains: restart with this shift
     const SparseCholesky factor(
-        constrained ? problem.stiffness : detail::SparseMatrix(problem.stiffness - shift * problem.mass), limits);
+        constrained ? problem.stiffness : SparseMatrix(problem.stiffness - shift * problem.mass), limits);
     detail::BlockLanczos lanczos(factor, problem.mass, problem.rigid, count);
     pairs = lanczos.run(tolerance, constrained ? 200 : 40, limits);
     lambda = problem.rayleigh(pairs.vectors);

@@ -102,7 +102,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   }
   QuasiNonLinear(Tissue&&, StiffeningCurve, StiffeningCurve = {}) = delete;
 
-  detail::TissueClaim& claim() noexcept { return claim_; }
+  TissueClaim& claim() noexcept { return claim_; }
   void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept {
     follow(forces);
     this->tissue().end_tick(forces, points);
@@ -179,7 +179,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
   Vector3 axis_{0.0, 0.0, 1.0};
   Matrix3 scale_;
   std::uint64_t revision_ = 0;
-  detail::TissueClaim claim_;
+  TissueClaim claim_;
 };
 
 /// The static solver `Inner` with a compliance that follows StiffeningCurves; see QuasiNonLinear.
@@ -248,7 +248,7 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   }
 
   // TissueModel
-  detail::TissueClaim& claim() noexcept { return stiffened_.claim(); }
+  TissueClaim& claim() noexcept { return stiffened_.claim(); }
   void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept {
     stiffened_.end_tick(forces, points);
     note_scale();

@@ -21,7 +21,7 @@
 #include <palpate/material/corotational.hpp>
 #include <palpate/material/linear_elastic.hpp>
 #include <palpate/mesh/scene.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/step_preconditioners.hpp>
 
 #include <algorithm>

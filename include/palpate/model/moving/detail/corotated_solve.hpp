@@ -4,7 +4,7 @@
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
 #include <palpate/model/moving/detail/tangent_solver.hpp>
 

@@ -1,7 +1,7 @@
 // Definitions of partly_linear_motion.hpp.
 #pragma once
 
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/condensation/detail/schur.hpp>
 #include <palpate/integrator/detail/requirements.hpp>
 #include <palpate/linear/detail/vector_kernels.hpp>

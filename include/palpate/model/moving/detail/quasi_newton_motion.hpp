@@ -8,7 +8,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/integrator/quasi_newton.hpp>
 #include <palpate/integrator/time_scheme.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/step_factor.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 

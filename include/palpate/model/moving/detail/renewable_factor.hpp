@@ -5,7 +5,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/model/detail/deformable_body.hpp>
+#include <palpate/model/deformable_body.hpp>
 #include <palpate/model/moving/detail/corotated_solve.hpp>
 #include <palpate/model/moving/detail/renewal_thread.hpp>
 #include <palpate/model/moving/detail/step_factor.hpp>

@@ -3,7 +3,7 @@
 
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
-#include <palpate/assembly/detail/free_stiffness.hpp>
+#include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_options.hpp>
 #include <palpate/core/types.hpp>

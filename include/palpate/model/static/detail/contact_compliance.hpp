@@ -14,9 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace palpate { inline namespace PALPATE_ABI {
-
-namespace detail {
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Slots for compliance columns: per loaded vertex nine contiguous values for every touchable vertex, because a tick
 /// reads single blocks. Stored as Scalar, float or double. A slot is written by one thread at a time.
@@ -51,18 +49,6 @@ class ComplianceColumns {
 
 template <std::floating_point Scalar>
 class ColumnWorker;
-
-}  // namespace detail
-
-/// When a solver that does not store the whole compliance computes a column.
-enum class ColumnFill : std::uint8_t {
-  automatic,    ///< synchronous when a column is cheap, asynchronous when it would delay a tick
-  synchronous,  ///< in the tick that first needs it: exact in every tick; the duration of a tick is not bounded
-  asynchronous  ///< in a background thread, for all vertices near a tool; a tick without a needed column reports
-                ///< degraded_model
-};
-
-namespace detail {
 
 /// Response of all touchable vertices to forces on some of them: three columns (x, y, z) per stored vertex, read as
 /// double. With a slot for every vertex all columns stay stored; with fewer slots the least recently used column is

@@ -47,18 +47,6 @@ CondensedSystem SolverTraits<Condensed<Inner>>::read(BinaryReader& in, const Blo
   return detail::read_condensed<typename detail::CondensedTraits<Inner>::Dense>(in, k, conditions, layout, limits);
 }
 
-/// A policy whose prepared system can be stored: `cache_name` is unique, the system has `write`, and `read` restores it
-/// from the written data, given the same stiffness, conditions and layout. `read` takes every size from these arguments
-/// and none from the file; its result is unspecified when the reader fails.
-template <class P>
-concept CacheablePolicy = SolverPolicy<P> &&
-    requires(BinaryReader& in, BinaryWriter& out, const BlockMatrix& k, const EssentialConditions& conditions,
-             const DofLayout& layout, const SetupLimits& limits) {
-  requires std::same_as<typename SolverTraits<P>::Assembly, Assembled>;
-  { SolverTraits<P>::cache_name } -> std::convertible_to<std::string_view>;
-  SolverTraits<P>::read(in, k, conditions, layout, limits).write(out);
-};
-
 namespace detail {
 
 template <class Policy>

@@ -20,9 +20,9 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-namespace detail {
-
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
+
+namespace detail {
 
 /// K restricted to the free dofs, as a preconditioned operator. Refers to its arguments, which must outlive it.
 /// Satisfies SpdOperator; owns two workspaces, so it must not be used from two threads simultaneously. Copies share the
@@ -59,10 +59,12 @@ class FreeStiffness {
   mutable VectorX in_, out_;
 };
 
+}  // namespace detail
+
 /// Calls visit(row, column, value) for every stored entry of the lower half of K_ff, rows ascending within a column.
 template <class Visit>
 void for_each_free_entry(const BlockMatrix& k, const EssentialConditions& conditions, Visit&& visit) {
-  const BlockPattern& pattern = k.pattern();
+  const detail::BlockPattern& pattern = k.pattern();
   const std::vector<Index>& free = conditions.free_index;
   for (Index i = 0; i < pattern.rows(); ++i)
     for (Index p = pattern.row_start[static_cast<std::size_t>(i)];
@@ -99,6 +101,8 @@ SparseMatrix free_matrix(const Matrix& k, const EssentialConditions& conditions)
   });
   return lower;
 }
+
+namespace detail {
 
 inline FreeStiffness::FreeStiffness(StiffnessView stiffness, const EssentialConditions& conditions)
     : stiffness_(stiffness), conditions_(&conditions), in_(stiffness.size()), out_(stiffness.size()) {
@@ -141,10 +145,5 @@ inline double free_norm(const BlockMatrix& k, const EssentialConditions& conditi
 }
 
 }  // namespace detail
-
-// For solvers of your own (SolverTraits::make).
-using detail::for_each_free_entry;
-using detail::free_matrix;
-using detail::SparseMatrix;
 
 }}  // namespace palpate

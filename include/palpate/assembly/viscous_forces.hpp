@@ -4,7 +4,7 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
 #include <palpate/concepts/element.hpp>
 #include <palpate/concepts/integrator.hpp>
@@ -23,8 +23,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-namespace detail {
-
 /// A body at small strain with the Prony series of its regions.
 template <Element E>
 struct ViscousBody {
@@ -32,6 +30,8 @@ struct ViscousBody {
   std::vector<std::vector<PronyTerm>> terms;  ///< by region
   std::vector<Relaxation> relaxation;         ///< by region
 };
+
+namespace detail {
 
 /// Elasticity of every material of a body [Pa], where region r counts `share(r)` of the relaxing part and `kept` of
 /// the constant part. Throws unsupported for deviatoric relaxation where the pressure depends on the deviatoric strain
@@ -76,8 +76,8 @@ inline std::vector<double> distinct_times(const std::vector<std::vector<PronyTer
 
 /// An admitted mesh with viscoelastic materials by region name; throws as materials_by_region.
 template <Element E, LinearMaterial Base, int Terms>
-detail::ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
-  detail::ViscousBody<E> body;
+ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelastic<Base, Terms>>& materials) {
+  ViscousBody<E> body;
   std::vector<Base> bases;
   for (const auto& material : detail::materials_by_region(mesh, materials)) {
     bases.push_back(material.base);
@@ -90,7 +90,7 @@ detail::ViscousBody<E> make_body(Mesh<E> mesh, const RegionMaterials<Viscoelasti
 }
 /// The same with one material for all regions.
 template <Element E, LinearMaterial Base, int Terms>
-detail::ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
+ViscousBody<E> make_body(Mesh<E> mesh, const Viscoelastic<Base, Terms>& material) {
   return make_body(std::move(mesh), RegionMaterials<Viscoelastic<Base, Terms>>{{everywhere, material}});
 }
 
@@ -192,8 +192,5 @@ inline void ViscousForces::set_length(double dt) noexcept {
 }
 
 }  // namespace detail
-
-// For motions of your own (SolverTraits::make_motion).
-using detail::ViscousBody;
 
 }}  // namespace palpate

@@ -24,8 +24,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-namespace detail {
-
 /// Total Lagrangian force of linear tetrahedra (Miller, Joldes, Lance, Wittek 2007): F from gradients at rest, f_a = V
 /// P grad N_a, Lanes<S, N> of elements simultaneously. Elements are grouped in blocks of 512 that are summed in the
 /// cache first, then by node: the order of summation is fixed, independent of the number of threads and of which thread
@@ -41,11 +39,12 @@ class BatchedTetrahedra {
   BatchedTetrahedra() = default;
   /// Throws as make_batches.
   explicit BatchedTetrahedra(const HyperelasticBody<Tet4, M>& body, const SetupLimits& limits = {})
-      : layout_(make_batches<S, N>(body, 160.0, limits)), materials_(body.materials) {
+      : layout_(detail::make_batches<S, N>(body, 160.0, limits)), materials_(body.materials) {
     rows_.assign(4 * layout_.nodes.size(), S(0));
     reports_.resize(layout_.blocks.size());
     range_.resize(layout_.batches.size());
-    probe_length_ = std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * shortest_edge(body.rest.mesh);
+    probe_length_ =
+        std::sqrt(static_cast<double>(std::numeric_limits<S>::epsilon())) * detail::shortest_edge(body.rest.mesh);
   }
 
   Index size() const noexcept { return 3 * layout_.node_count(); }
@@ -64,9 +63,9 @@ class BatchedTetrahedra {
   /// Stored energy [J].
   double energy(const VectorX& u) noexcept {
     double sum = 0.0;
-    for (const TetrahedronBlock& block : layout_.blocks) {
+    for (const detail::TetrahedronBlock& block : layout_.blocks) {
       const M material = materials_[static_cast<std::size_t>(block.region)];
-      Lanes<S, N> part(S(0));
+      detail::Lanes<S, N> part(S(0));
       layout_.for_each_gradient(
           block, u, [&](const Batch& batch, const Gradient& f) { part += batch.volume * material.energy(f); });
       for (int lane = 0; lane < N; ++lane) sum += static_cast<double>(part[lane]);
@@ -79,22 +78,22 @@ class BatchedTetrahedra {
 
   /// The three parts of force(), for several threads: every block once, in any order; then every node; then the report.
   void compute_block(Index index, const VectorX& u) noexcept {
-    const TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
+    const detail::TetrahedronBlock block = layout_.blocks[static_cast<std::size_t>(index)];
     S* const rows = layout_.cleared(block, rows_);
     const M material = materials_[static_cast<std::size_t>(block.region)];
-    VolumeWatch<S, N> watch;
+    detail::VolumeWatch<S, N> watch;
     if constexpr (has_kernel) {
-      const auto [lambda, mu] = lame<S>(material.small_strain());
+      const auto [lambda, mu] = detail::lame<S>(material.small_strain());
       S volumes[4 * N];
-      tetrahedron_kernels().neo_hookean({layout_.batches.data() + block.first_batch, block.batch_count,
-                                         layout_.nodes.data() + block.first_row, block.row_count, u.data(), rows,
-                                         lambda, mu, volumes});
+      detail::tetrahedron_kernels().neo_hookean({layout_.batches.data() + block.first_batch, block.batch_count,
+                                                 layout_.nodes.data() + block.first_row, block.row_count, u.data(),
+                                                 rows, lambda, mu, volumes});
       watch.read(volumes);
     } else {
       layout_.for_each_gradient(block, u, [&](const Batch& batch, const Gradient& f) {
         watch.observe(determinant(f, cofactor(f)), batch.volume);
         batch.add_force(material.stress(f), rows);
-        if constexpr (!RangedByVolume<M>) observe_range(batch, material, f);
+        if constexpr (!detail::RangedByVolume<M>) observe_range(batch, material, f);
       });
     }
     DeformationReport& report = reports_[static_cast<std::size_t>(index)];
@@ -104,18 +103,19 @@ class BatchedTetrahedra {
   void add_up(Index first_node, Index last_node, VectorX& f) const noexcept {
     layout_.add_up(rows_.data(), first_node, last_node, f);
   }
-  DeformationReport report() const noexcept { return report_of(reports_); }
+  DeformationReport report() const noexcept { return detail::report_of(reports_); }
 
  private:
-  using Batch = TetrahedronBatch<S, N>;
-  using Gradient = Tensor3<Lanes<S, N>>;
+  using Batch = detail::TetrahedronBatch<S, N>;
+  using Gradient = Tensor3<detail::Lanes<S, N>>;
 
   void observe_range(const Batch& batch, const M& material, const Gradient& f) noexcept {
     range_.observe(static_cast<std::size_t>(&batch - layout_.batches.data()), material, f, batch.volume);
   }
   /// Elements of a block beyond the range of their material.
-  Index beyond_range(const TetrahedronBlock& block, const M& material, const VectorX& u, double smallest) noexcept {
-    if constexpr (RangedByVolume<M>) {
+  Index beyond_range(const detail::TetrahedronBlock& block, const M& material, const VectorX& u,
+                     double smallest) noexcept {
+    if constexpr (detail::RangedByVolume<M>) {
       if (smallest > material.range_volume_ratio()) return 0;
       layout_.for_each_gradient(block, u,
                                 [&](const Batch& batch, const Gradient& f) { observe_range(batch, material, f); });
@@ -127,17 +127,12 @@ class BatchedTetrahedra {
   // by processor, with palpate::compiled
   static constexpr bool has_kernel = std::is_same_v<M, NeoHookean> && N == any_flags::tetrahedra_at_once<S>;
 
-  TetrahedronBatches<S, N> layout_;
+  detail::TetrahedronBatches<S, N> layout_;
   std::vector<M> materials_;                // by region
   std::vector<S> rows_;                     // force on every row, four numbers per row
   std::vector<DeformationReport> reports_;  // by block
-  RangeWatch<M, S, N> range_;
+  detail::RangeWatch<M, S, N> range_;
   double probe_length_ = 0.0;
 };
-
-}  // namespace detail
-
-// For programs: documented in docs/dynamics.md.
-using detail::BatchedTetrahedra;
 
 }}  // namespace palpate

@@ -4,10 +4,10 @@
 #include <palpate/assembly/assembled.hpp>
 #include <palpate/assembly/block_matrix.hpp>
 #include <palpate/assembly/body.hpp>
-#include <palpate/assembly/detail/elastic_forces.hpp>
+#include <palpate/assembly/elastic_forces.hpp>
 #include <palpate/assembly/essential_conditions.hpp>
 #include <palpate/assembly/detail/smoothed_stiffness.hpp>
-#include <palpate/assembly/detail/viscous_forces.hpp>
+#include <palpate/assembly/viscous_forces.hpp>
 #include <palpate/assembly/hyperelastic_body.hpp>
 #include <palpate/assembly/large_strain.hpp>
 #include <palpate/assembly/load_vector.hpp>
@@ -30,19 +30,19 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
-namespace detail {
-
 /// Forces, conditions, loads and mass of a body, independent of its elements and materials. Vectors have 3 entries per
 /// node.
 struct DeformableBody {
   std::unique_ptr<ElasticForces> elastic;
   EssentialConditions conditions;
-  VectorX load;     ///< dead loads, gravity included [N]
-  MassMatrix mass;  ///< consistent; empty in a body for statics
-  VectorX lumped;   ///< mass per node [kg]; empty in a body for statics
-  BlockPattern pattern;
+  VectorX load;             ///< dead loads, gravity included [N]
+  detail::MassMatrix mass;  ///< consistent; empty in a body for statics
+  VectorX lumped;           ///< mass per node [kg]; empty in a body for statics
+  detail::BlockPattern pattern;
   std::vector<Vector3> positions;  ///< at rest [m]
 };
+
+namespace detail {
 
 /// Diagonal of the bounding box of a body [m].
 inline double extent(const std::vector<Vector3>& positions) {
@@ -109,11 +109,13 @@ auto make_any_body(Mesh<E> mesh, const RegionMaterials<M>& materials) {
 // The functions below do not check the geometry of a body (flat and inverted elements): make bodies from admitted
 // meshes (mesh/admission.hpp). Equilibrium and HapticFEModel admit their meshes.
 
+}  // namespace detail
+
 /// A hyperelastic body in a scene. Throws the errors of assembly and conditions, and unsupported for initial strains.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-  refuse_initial_strains(scene);
-  DeformableBody made = body_with_mass(body.rest, scene, limits);
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.rest, scene, limits);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -121,8 +123,8 @@ DeformableBody make_deformable_body(HyperelasticBody<E, M> body, const Scene& sc
 /// The same for statics: without mass. Also throws unconstrained when the body can move rigidly in the scene.
 template <Element E, LargeStrainMaterial M>
 DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& scene, const SetupLimits& limits = {}) {
-  refuse_initial_strains(scene);
-  DeformableBody made = constrained_body_without_forces(body.rest, scene);
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::constrained_body_without_forces(body.rest, scene);
   made.elastic = std::make_unique<LargeStrain<E, M>>(std::move(body), limits);
   return made;
 }
@@ -130,10 +132,10 @@ DeformableBody make_constrained_body(HyperelasticBody<E, M> body, const Scene& s
 /// A body at small strain in a scene; initial strains become loads.
 template <Element E>
 DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
-  static_assert(!HasSmoothedStrain<E>,
+  static_assert(!detail::HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
-  DeformableBody made = body_with_mass(body, scene, limits);
-  made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
+  DeformableBody made = detail::body_with_mass(body, scene, limits);
+  made.load += detail::initial_strain_load(body, detail::initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
 }
@@ -141,9 +143,10 @@ DeformableBody make_deformable_body(Body<E> body, const Scene& scene, const Setu
 /// The same for statics, as above.
 template <Element E>
 DeformableBody make_constrained_body(Body<E> body, const Scene& scene, const SetupLimits& limits = {}) {
-  static_assert(!HasSmoothedStrain<E>, "palpate: for statics at small strain with smoothed elements use HapticFEModel");
-  DeformableBody made = constrained_body_without_forces(body, scene);
-  made.load += initial_strain_load(body, initial_strains_by_region(body.mesh, scene));
+  static_assert(!detail::HasSmoothedStrain<E>,
+                "palpate: for statics at small strain with smoothed elements use HapticFEModel");
+  DeformableBody made = detail::constrained_body_without_forces(body, scene);
+  made.load += detail::initial_strain_load(body, detail::initial_strains_by_region(body.mesh, scene));
   made.elastic = std::make_unique<LinearForces>(assemble_stiffness<E>(body, limits));
   return made;
 }
@@ -151,30 +154,23 @@ DeformableBody make_constrained_body(Body<E> body, const Scene& scene, const Set
 /// A viscoelastic body at small strain. Also throws unsupported for initial strains, and the errors of ViscousForces.
 template <Element E>
 DeformableBody make_deformable_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
-  static_assert(!HasSmoothedStrain<E>,
+  static_assert(!detail::HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mass");
-  refuse_initial_strains(scene);
-  DeformableBody made = body_with_mass(body.fast, scene, limits);
-  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::body_with_mass(body.fast, scene, limits);
+  made.elastic = std::make_unique<detail::ViscousForces>(std::move(body), limits);
   return made;
 }
 
 /// The same for statics, as above.
 template <Element E>
 DeformableBody make_constrained_body(ViscousBody<E> body, const Scene& scene, const SetupLimits& limits = {}) {
-  static_assert(!HasSmoothedStrain<E>,
+  static_assert(!detail::HasSmoothedStrain<E>,
                 "palpate: the stiffness of a smoothed element has a different sparsity pattern than its mesh");
-  refuse_initial_strains(scene);
-  DeformableBody made = constrained_body_without_forces(body.fast, scene);
-  made.elastic = std::make_unique<ViscousForces>(std::move(body), limits);
+  detail::refuse_initial_strains(scene);
+  DeformableBody made = detail::constrained_body_without_forces(body.fast, scene);
+  made.elastic = std::make_unique<detail::ViscousForces>(std::move(body), limits);
   return made;
 }
-
-}  // namespace detail
-
-// For programs: documented in docs/soft.md, for Equilibrium and ImplicitDynamics.
-using detail::DeformableBody;
-using detail::make_constrained_body;
-using detail::make_deformable_body;
 
 }}  // namespace palpate

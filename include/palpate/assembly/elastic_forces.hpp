@@ -9,8 +9,6 @@
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
-namespace detail {
-
 /// Energy, force and tangent of a body at a displacement u, all dofs, 3 per node [m]. Called once per iteration or
 /// step for the whole body, so the cost of a virtual call is negligible, and code that uses it is compiled once for all
 /// elements and materials. With a viscoelastic history (begin_step, end_step) the energy is that of the step: its
@@ -57,7 +55,11 @@ class LinearForces final : public ElasticForces {
   mutable VectorX force_;
 };
 
+namespace detail {
+
 static_assert(ForceOperator<LinearForces>);
+
+}  // namespace detail
 
 inline double LinearForces::energy(const VectorX& u) const noexcept {
   stiffness_.apply(u, force_);
@@ -70,11 +72,5 @@ inline DeformationReport LinearForces::force(const VectorX& u, VectorX& f) const
   report.smallest_volume_ratio = 1.0;
   return report;
 }
-
-}  // namespace detail
-
-// For programs: documented in docs/dynamics.md.
-using detail::ElasticForces;
-using detail::LinearForces;
 
 }}  // namespace palpate

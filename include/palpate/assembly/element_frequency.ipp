@@ -1,7 +1,7 @@
 // Definitions of element_frequency.hpp.
 #pragma once
 
-#include <palpate/assembly/detail/element_frequency.hpp>
+#include <palpate/assembly/element_frequency.hpp>
 
 #include <Eigen/Eigenvalues>
 
