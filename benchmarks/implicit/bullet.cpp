@@ -21,7 +21,7 @@ void measure_bullet(bench::RowFile& rows, int n) {
   scene.fix(pressing.block.constrained).gravity(Vector3(0.0, 0.0, -9.81));
   detail::CorotatedMotionOptions options;
   options.solve.tolerance = 3e-3;
-  detail::CorotatedMotion<LinearElastic, float> ours(pressing.body, scene, options);
+  detail::CorotatedMotion<float> ours(pressing.body, scene, options);
   const Mesh<Tet4>& mesh = pressing.body.rest.mesh;
   bench::BulletBody theirs(mesh, lumped_mass(pressing.body.rest), pressing.block.constrained,
                            std::make_unique<btDeformableLinearElasticityForce>(

@@ -178,9 +178,8 @@ void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
   scene.fix(block.constrained);
   detail::CorotatedMotionOptions options;
   options.mass_damping = 5.0;
-  const std::vector<Corotational<LinearElastic>> corotational{{soft.small_strain()}};
-  detail::CorotatedMotion<LinearElastic, double> corotated(make_hyperelastic_body(block.mesh, corotational), scene,
-                                                           options);
+  const std::vector<Corotational> corotational{{soft.youngs_modulus, soft.poisson_ratio, soft.density}};
+  detail::CorotatedMotion<double> corotated(make_hyperelastic_body(block.mesh, corotational), scene, options);
   measure_scrambles(rows, corotated, "co-rotated, implicit Euler without a factor", runs);
   ImplicitDynamics solved(
       make_deformable_body(make_hyperelastic_body(block.mesh, std::vector<NeoHookean>{soft}), scene),
@@ -191,8 +190,8 @@ void measure_implicit_scrambles(bench::RowFile& rows, int runs) {
 }
 
 void measure_static_hold(bench::RowFile& rows, int ticks) {
-  HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>> tissue(
-      box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}), Scene().fix("z0").touch("z1"), soft, {}, {.step = 0.01});
+  HapticFEModel<Tet4, NeoHookean, Implicit<Newton>> tissue(box_tet4({0.06, 0.06, 0.03}, {4, 4, 2}),
+                                                           Scene().fix("z0").touch("z1"), soft, {}, {.step = 0.01});
   HapticServo servo(tissue, SphereTool{.radius = 0.012});
   const auto tick = [&](int k) {
     if (k % 10 == 0) tissue.advance();

@@ -129,7 +129,7 @@ void measure(bench::RowFile& rows, const char* name, const M& material,
 }  // namespace
 
 void measure_energy_in_contact(bench::RowFile& rows, int steps) {
-  using NewtonSteps = Implicit<Newton<SparseCholesky>>;
+  using NewtonSteps = Implicit<Newton>;
   using QuasiNewtonSteps = Implicit<QuasiNewton<>>;
   const NeoHookean plain{young, nu, density};
   const auto law = [&]<class M>(const char* name, const M& material, const EnergyCheck& check = {}) {
@@ -152,7 +152,7 @@ void measure_energy_in_contact(bench::RowFile& rows, int steps) {
   measure<QuasiNewtonSteps, Smooth>(rows, "neo-Hookean (logarithmic), smoothed, quasi-Newton",
                                     NeoHookeanLogarithmic{young, nu, density}, {.settle = false}, steps);
   measure<Implicit<MatrixFreeCG<BlockJacobi, double>>, Tet4>(
-      rows, "co-rotated, matrix-free", Corotational<LinearElastic>{{young, nu, density}}, {.settle = false}, steps);
+      rows, "co-rotated, matrix-free", Corotational{young, nu, density}, {.settle = false}, steps);
   // Nothing else takes away what the contact puts in: without damping the block is hit until its elements invert.
   measure<Explicit<CentralDifference>, Tet4>(rows, "neo-Hookean, central differences, damped by 1/s", plain,
                                              {.settle = false, .mass_damping = 1.0}, steps,

@@ -14,7 +14,7 @@ namespace implicit_path {
 
 using namespace palpate;
 
-using Corotated = Corotational<LinearElastic>;
+using Corotated = Corotational;
 
 /// The standard block under its weight, fixed at the bottom; a patch in the middle of its top is pressed 20 mm down and
 /// up again, twice a second.
@@ -25,7 +25,9 @@ struct Pressing {
 
   explicit Pressing(int n)
       : block(bench::standard_block(n)),
-        body(make_hyperelastic_body(block.mesh, std::vector<Corotated>{{bench::tissue}})) {
+        body(make_hyperelastic_body(
+            block.mesh, std::vector<Corotated>{
+                            {bench::tissue.youngs_modulus, bench::tissue.poisson_ratio, bench::tissue.density}})) {
     scene.fix(block.constrained).fix(block.touched).gravity(Vector3(0.0, 0.0, -9.81));
   }
   double tets() const { return static_cast<double>(body.rest.mesh.element_count()); }

@@ -28,7 +28,7 @@ template <class M>
 M material_of() {
   const auto& t = bench::tissue;
   if constexpr (std::is_same_v<M, Corotated>)
-    return {t};
+    return {t.youngs_modulus, t.poisson_ratio, t.density};
   else if constexpr (std::is_same_v<M, MooneyRivlin>)  // the same stiffness at small strain
     return {.c10 = 0.4 * t.shear_modulus(),
             .c01 = 0.1 * t.shear_modulus(),
@@ -83,8 +83,7 @@ ReleasedBlock corotated_motion(int n, TimeScheme scheme) {
   detail::CorotatedMotionOptions options;
   options.scheme = scheme;
   options.solve.tolerance = 3e-3;
-  auto motion =
-      std::make_shared<detail::CorotatedMotion<LinearElastic, S>>(body_of<Corotated>(n), scene_of(n), options);
+  auto motion = std::make_shared<detail::CorotatedMotion<S>>(body_of<Corotated>(n), scene_of(n), options);
   return {[motion] { return motion->step(tick).taken; },
           [motion]() -> const VectorX& { return motion->displacement(); }};
 }

@@ -14,8 +14,8 @@ struct Comparison {
   double h;
   LargeStrain<Tet4, Corotated> force;
   ImplicitDynamics solved;
-  detail::CorotatedMotion<LinearElastic, double> norm;  // for products with M + h^2 K
-  double increment = 0.0, contact = 0.0;                // largest errors so far
+  detail::CorotatedMotion<double> norm;   // for products with M + h^2 K
+  double increment = 0.0, contact = 0.0;  // largest errors so far
 
   Comparison(const Pressing& p, double step)
       : pressing(p),
@@ -84,7 +84,7 @@ Measured run(const Pressing& pressing, double h, Motion& motion, Step&& step, st
 
 template <class S, class Preconditioner = BlockJacobi>
 Measured run_ours(const Pressing& pressing, double h, const detail::CorotatedMotionOptions& options) {
-  detail::CorotatedMotion<LinearElastic, S, Preconditioner> motion(pressing.body, pressing.scene, options);
+  detail::CorotatedMotion<S, Preconditioner> motion(pressing.body, pressing.scene, options);
   return run(pressing, h, motion, [&](const VectorX& prescribed) {
     motion.set_prescribed(prescribed);
     return motion.step(h).solve.iterations;

@@ -62,7 +62,7 @@ class QuasiNewtonBlock : public Method {
   VectorX prescribed_, f_;
 };
 
-const Corotational<LinearElastic> corotational{bench::tissue};
+const Corotational corotational{bench::tissue.youngs_modulus, bench::tissue.poisson_ratio, bench::tissue.density};
 
 /// Co-rotated tetrahedra without a factorisation.
 class CorotatedBlock : public Method {

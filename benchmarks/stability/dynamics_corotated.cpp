@@ -6,7 +6,7 @@
 namespace maps {
 namespace {
 
-using Motion = detail::CorotatedMotion<LinearElastic, float>;
+using Motion = detail::CorotatedMotion<float>;
 
 Moved move(const DynamicProblem& problem, double dt, const TimeScheme& scheme) {
   Motion motion(corotational(problem), problem.scene, {.scheme = scheme});

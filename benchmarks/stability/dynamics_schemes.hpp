@@ -13,9 +13,8 @@ namespace maps {
 inline HyperelasticBody<Tet4, NeoHookean> neo_hookean(const DynamicProblem& p) {
   return make_hyperelastic_body<Tet4, NeoHookean>(p.mesh, std::vector<NeoHookean>{{p.young, p.nu, p.density}});
 }
-inline HyperelasticBody<Tet4, Corotational<LinearElastic>> corotational(const DynamicProblem& p) {
-  return make_hyperelastic_body<Tet4, Corotational<LinearElastic>>(
-      p.mesh, std::vector<Corotational<LinearElastic>>{{{p.young, p.nu, p.density}}});
+inline HyperelasticBody<Tet4, Corotational> corotational(const DynamicProblem& p) {
+  return make_hyperelastic_body<Tet4, Corotational>(p.mesh, std::vector<Corotational>{{p.young, p.nu, p.density}});
 }
 
 /// Steps of a motion that returns a report; `converged` extracts the convergence from the report.

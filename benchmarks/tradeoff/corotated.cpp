@@ -8,9 +8,9 @@ void add_corotated(const Bench& bench, std::vector<Entry>& entries) {
     const CorotatedParameters parameters{.mass_damping = rest_damping, .solve = {iterations, tolerance}};
     const std::string work =
         tolerance > 0.0 ? "1 ms, to " + number(tolerance) : "1 ms, " + std::to_string(iterations) + " iterations";
-    entries.push_back(soft_entry<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>(
+    entries.push_back(soft_entry<Tet4, Corotational, Implicit<MatrixFreeCG<BlockJacobi>>>(
         bench, "Tet4", "co-rotated", "Implicit<MatrixFreeCG>", mesh, "float", work, parameters,
-        "using Model = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;   // "
+        "using Model = HapticFEModel<Tet4, Corotational, Implicit<MatrixFreeCG<BlockJacobi>>>;   // "
         "with {.mass_damping = " +
             number(rest_damping) + ", .solve = {" + std::to_string(iterations) + ", " + number(tolerance) + "}}"));
   };

@@ -11,11 +11,10 @@ void add_soft(const Bench& bench, std::vector<Entry>& entries) {
     ImplicitParameters parameters{.step = step, .scheme = scheme, .mass_damping = rest_damping};
     parameters.newton.maximum_iterations = iterations;
     const std::string work = number(1e3 * step) + " ms, " + std::to_string(iterations) + " iterations" + scheme_name;
-    entries.push_back(soft_entry<E, NeoHookean, Implicit<Newton<SparseCholesky>>>(
+    entries.push_back(soft_entry<E, NeoHookean, Implicit<Newton>>(
         bench, element, "neo-Hookean", "Implicit<Newton>", mesh, "double", work, parameters,
-        "using Model = HapticFEModel<" + std::string(element) +
-            ", NeoHookean, Implicit<Newton<SparseCholesky>>>;   // with {.step = " + number(step) +
-            ", .mass_damping = " + number(rest_damping) +
+        "using Model = HapticFEModel<" + std::string(element) + ", NeoHookean, Implicit<Newton>>;   // with {.step = " +
+            number(step) + ", .mass_damping = " + number(rest_damping) +
             ", .newton = {.maximum_iterations = " + std::to_string(iterations) + "}}"));
   };
   const TimeScheme euler = TimeScheme::implicit_euler();

@@ -27,7 +27,7 @@ using touch::text;
 namespace {
 
 using Tissue = Viscoelastic<NeoHookean, 1>;
-using Pad = HapticFEModel<Tet4, Tissue, Implicit<Newton<SparseCholesky>>>;
+using Pad = HapticFEModel<Tet4, Tissue, Implicit<Newton>>;
 constexpr PronyTerm term{.share = 0.6, .relaxation_time = 0.4};
 constexpr double depth = 4e-3, fast = 0.05, seconds = 2.5;  // [m], time to press [s], total time [s]
 constexpr SphereTool finger{.radius = 8e-3};

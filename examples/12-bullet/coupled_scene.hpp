@@ -8,7 +8,7 @@ namespace bullet_example {
 
 using namespace palpate;
 
-using Elastic = Corotational<LinearElastic>;
+using Elastic = Corotational;
 using Tissue = HapticFEModel<Tet4, Elastic, Metered<Implicit<MatrixFreeCG<BlockJacobi, float>>>>;
 
 /// Energies [J]. Stored ones are those of the moment, the others are sums since the start.

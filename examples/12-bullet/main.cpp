@@ -143,7 +143,7 @@ struct Arguments {
 Tissue make_tissue() {
   return {make_bowl(),
           Scene().fix("z0").touch("z1"),
-          Elastic{{.youngs_modulus = 15e3, .poisson_ratio = 0.4, .density = 1000.0}},
+          Elastic{.youngs_modulus = 15e3, .poisson_ratio = 0.4, .density = 1000.0},
           {},
           {.stiffness_damping = 5e-4, .solve = {.maximum_iterations = 100, .tolerance = 1e-3}}};
 }

@@ -12,7 +12,7 @@ using namespace test;
 
 namespace {
 
-using Law = Corotational<LinearElastic>;
+using Law = Corotational;
 
 /// A block in two regions, with displaced inner nodes.
 HyperelasticBody<Tet4, Law> rotational_block(std::array<int, 3> cells) {
@@ -63,7 +63,7 @@ VectorX plain_product(const HyperelasticBody<Tet4, Law>& body, const VectorX& u,
 template <class S>
 void compare(const HyperelasticBody<Tet4, Law>& body, const VectorX& u, double tolerance) {
   const LargeStrain<Tet4, Law> plain(body);
-  detail::CorotatedTetrahedra<LinearElastic, S> batched(body);
+  detail::CorotatedTetrahedra<S> batched(body);
   VectorX exact(u.size()), f(u.size()), y(u.size());
   double energy = 0.0;
   const DeformationReport wanted = plain.force(u, exact), got = batched.linearise(u, f, energy);
@@ -95,7 +95,7 @@ TEST_CASE("co-rotated batches give force, energy and product of the material", "
 TEST_CASE("co-rotated batches follow a motion with inverted elements", "[assembly][corotated][E5]") {
   const auto body = rotational_block({3, 3, 3});
   const LargeStrain<Tet4, Law> plain(body);
-  detail::CorotatedTetrahedra<LinearElastic, double> batched(body);
+  detail::CorotatedTetrahedra<double> batched(body);
   const VectorX path = wild(3 * body.rest.mesh.node_count(), 0.03);
   VectorX f(path.size()), exact(path.size());
   double energy = 0.0, worst = 0.0;
@@ -116,8 +116,8 @@ TEST_CASE("a rigid rotation causes no force, at all angles including exactly 180
   const Mesh<Tet4>& mesh = body.rest.mesh;
   const VectorX rest = VectorX::Zero(3 * mesh.node_count());
   const double unit = 15e3 * 0.025 * 0.025;  // E h^2
-  detail::CorotatedTetrahedra<LinearElastic, double> batched(body);
-  detail::CorotatedTetrahedra<LinearElastic, float> single(body);
+  detail::CorotatedTetrahedra<double> batched(body);
+  detail::CorotatedTetrahedra<float> single(body);
   VectorX f(rest.size());
   double energy = 0.0, worst = 0.0, worst_single = 0.0;
   const auto look = [&](const Matrix3& r) {
@@ -137,7 +137,7 @@ TEST_CASE("a rigid rotation causes no force, at all angles including exactly 180
 
 TEST_CASE("the diagonal blocks equal those of the product", "[assembly][corotated]") {
   const auto body = rotational_block({2, 2, 2});
-  detail::CorotatedTetrahedra<LinearElastic, double> batched(body);
+  detail::CorotatedTetrahedra<double> batched(body);
   const Index dofs = batched.size();
   VectorX f(dofs), straight(dofs), mixed(dofs), e = VectorX::Zero(dofs), y(dofs);
   double energy = 0.0;
@@ -157,7 +157,7 @@ TEST_CASE("the diagonal blocks equal those of the product", "[assembly][corotate
 
 TEST_CASE("the product is symmetric and positive semidefinite in every state", "[assembly][corotated][E5]") {
   const auto body = rotational_block({3, 2, 2});
-  detail::CorotatedTetrahedra<LinearElastic, double> batched(body);
+  detail::CorotatedTetrahedra<double> batched(body);
   const Index dofs = batched.size();
   VectorX f(dofs), kx(dofs), ky(dofs);
   double energy = 0.0;
@@ -177,7 +177,7 @@ TEST_CASE("the product is symmetric and positive semidefinite in every state", "
 
 TEST_CASE("non-finite states are reported, without effect on the next state", "[assembly][corotated]") {
   const auto body = rotational_block({3, 2, 2});
-  detail::CorotatedTetrahedra<LinearElastic, float> batched(body);
+  detail::CorotatedTetrahedra<float> batched(body);
   VectorX u = wild(batched.size(), 0.001), f(u.size()), again(u.size());
   double energy = 0.0;
   batched.linearise(u, f, energy);
@@ -192,9 +192,9 @@ TEST_CASE("non-finite states are reported, without effect on the next state", "[
 
 TEST_CASE("co-rotated batches refuse invalid meshes and materials", "[assembly][corotated]") {
   auto body = rotational_block({2, 2, 2});
-  body.materials[1].base.poisson_ratio = 0.5;
+  body.materials[1].poisson_ratio = 0.5;
   CHECK_REFUSED(SetupErrorKind::bad_poisson_ratio, detail::CorotatedTetrahedra<>{body});
-  body.materials[1].base.poisson_ratio = 0.4;
+  body.materials[1].poisson_ratio = 0.4;
   std::swap(body.rest.mesh.elements[7][0], body.rest.mesh.elements[7][1]);
   CHECK_REFUSED(SetupErrorKind::inverted_element, detail::CorotatedTetrahedra<>{body});
 }

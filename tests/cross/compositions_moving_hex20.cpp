@@ -7,13 +7,13 @@ namespace cross {
 using namespace palpate;
 
 void add_moving_hex20(Compositions& all) {
-  all.push_back(composition<Hex20, Orthotropic, Implicit<Newton<SparseCholesky>>>());
-  all.push_back(composition<Hex20, Corotational<LinearElastic>, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Hex20, StVenantKirchhoff, Implicit<Newton<SparseCholesky>>>());
+  all.push_back(composition<Hex20, Orthotropic, Implicit<Newton>>());
+  all.push_back(composition<Hex20, Corotational, Explicit<SemiImplicitEuler>>());
+  all.push_back(composition<Hex20, StVenantKirchhoff, Implicit<Newton>>());
   all.push_back(composition<Hex20, NeoHookean, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Hex20, NeoHookeanLogarithmic, Explicit<CentralDifference>>());
   all.push_back(composition<Hex20, NeoHookeanIsochoric, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Hex20, MooneyRivlin, Implicit<Newton<SparseCholesky>>>());
+  all.push_back(composition<Hex20, MooneyRivlin, Implicit<Newton>>());
   all.push_back(composition<Hex20, FibreReinforced<NeoHookean>, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Hex20, Viscoelastic<NeoHookean, 1>, Implicit<QuasiNewton<double>>>());
 }

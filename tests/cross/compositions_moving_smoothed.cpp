@@ -7,7 +7,7 @@ namespace cross {
 using namespace palpate;
 
 void add_moving_smoothed(Compositions& all) {
-  all.push_back(composition<Smoothed<Tet4>, Corotational<LinearElastic>, Implicit<QuasiNewton<double>>>());
+  all.push_back(composition<Smoothed<Tet4>, Corotational, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Smoothed<Tet4>, StVenantKirchhoff, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<float>>>());

@@ -9,14 +9,14 @@ using namespace palpate;
 void add_moving_tet10(Compositions& all) {
   all.push_back(composition<Tet10, LinearElastic, Explicit<SemiImplicitEuler>>());
   all.push_back(composition<Tet10, TransverselyIsotropic, Explicit<CentralDifference>>());
-  all.push_back(composition<Tet10, Corotational<LinearElastic>, Implicit<QuasiNewton<float>>>());
+  all.push_back(composition<Tet10, Corotational, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Tet10, StVenantKirchhoff, Explicit<CentralDifference>>());
   all.push_back(composition<Tet10, NeoHookean, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Tet10, NeoHookeanLogarithmic, Implicit<Newton<SparseCholesky>>>());
+  all.push_back(composition<Tet10, NeoHookeanLogarithmic, Implicit<Newton>>());
   all.push_back(composition<Tet10, NeoHookeanIsochoric, Implicit<QuasiNewton<float>>>());
   all.push_back(composition<Tet10, MooneyRivlin, Explicit<CentralDifference>>());
   all.push_back(composition<Tet10, FibreReinforced<NeoHookean>, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Tet10, Viscoelastic<NeoHookean, 1>, Implicit<Newton<SparseCholesky>>>());
+  all.push_back(composition<Tet10, Viscoelastic<NeoHookean, 1>, Implicit<Newton>>());
 }
 
 }  // namespace cross

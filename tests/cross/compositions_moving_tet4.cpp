@@ -9,12 +9,12 @@ using namespace palpate;
 void add_moving_tet4(Compositions& all) {
   all.push_back(composition<Tet4, LinearElastic, Explicit<CentralDifference>>());
   all.push_back(composition<Tet4, Orthotropic, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Tet4, Corotational<LinearElastic>, Implicit<Newton<SparseCholesky>>>());
-  all.push_back(composition<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>());
+  all.push_back(composition<Tet4, Corotational, Implicit<Newton>>());
+  all.push_back(composition<Tet4, Corotational, Implicit<MatrixFreeCG<BlockJacobi>>>());
   all.push_back(composition<Tet4, StVenantKirchhoff, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Tet4, NeoHookean, Explicit<CentralDifference>>());
   all.push_back(composition<Tet4, NeoHookeanLogarithmic, Explicit<SemiImplicitEuler>>());
-  all.push_back(composition<Tet4, NeoHookeanIsochoric, Implicit<Newton<SparseCholesky>>>());
+  all.push_back(composition<Tet4, NeoHookeanIsochoric, Implicit<Newton>>());
   all.push_back(composition<Tet4, MooneyRivlin, Implicit<QuasiNewton<double>>>());
   all.push_back(composition<Tet4, FibreReinforced<NeoHookean>, Explicit<CentralDifference>>());
   all.push_back(composition<Tet4, Viscoelastic<NeoHookean, 1>, Implicit<QuasiNewton<float>>>());

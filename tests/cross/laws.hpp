@@ -115,11 +115,8 @@ struct Law<palpate::Orthotropic> {
 };
 
 template <>
-struct Law<palpate::Corotational<palpate::LinearElastic>> {
+struct Law<palpate::Corotational> : PlainLaw<palpate::Corotational> {
   static constexpr const char* word = "corotational";
-  static palpate::Corotational<palpate::LinearElastic> make(const Stiffness& s) {
-    return {Law<palpate::LinearElastic>::make(s)};
-  }
 };
 
 template <>

@@ -18,7 +18,7 @@ std::unique_ptr<Model> make_stepping(const Scene& scene, const Construct& constr
 }
 
 template <>
-struct SolverOf<palpate::Implicit<palpate::Newton<palpate::SparseCholesky>>> {
+struct SolverOf<palpate::Implicit<palpate::Newton>> {
   static constexpr const char* word = "newton";
   template <class Model, class Construct>
   static std::unique_ptr<Model> make(const Scene& scene, const Body&, const Construct& construct) {

@@ -70,7 +70,7 @@ const Type& type_of(const std::string& word) {
       {"linear", {"LinearElastic"}},
       {"transversely_isotropic", {"TransverselyIsotropic", materials}},
       {"orthotropic", {"Orthotropic", materials}},
-      {"corotational", {"Corotational<LinearElastic>", soft}},
+      {"corotational", {"Corotational", soft}},
       {"st_venant_kirchhoff", {"StVenantKirchhoff", soft}},
       {"neo_hookean", {"NeoHookean", soft}},
       {"neo_hookean_logarithmic", {"NeoHookeanLogarithmic", soft}},
@@ -87,7 +87,7 @@ const Type& type_of(const std::string& word) {
       {"matrix_free_cg", {"WithAssembly<ConjugateGradient, MatrixFree>"}},
       {"inverse", {"SelectiveInverse"}},
       {"stiffening", {"Stiffening<Condensed<SelectiveInverse>>", soft}},
-      {"newton", {"Implicit<Newton<SparseCholesky>>", soft}},
+      {"newton", {"Implicit<Newton>", soft}},
       {"corotated_cg", {"Implicit<MatrixFreeCG<BlockJacobi>>", soft}},
       {"quasi_newton", {"Implicit<QuasiNewton<double>>", soft}},
       {"quasi_newton_float", {"Implicit<QuasiNewton<float>>", soft}},
@@ -130,7 +130,6 @@ std::string material_of(const Scene& scene, double youngs_modulus) {
     const auto m = Law<palpate::MooneyRivlin>::make(s);
     return members({{"c10", m.c10}, {"c01", m.c01}, {"bulk_modulus", m.bulk_modulus}, {"density", m.density}});
   }
-  if (scene.law == "corotational") return ".base = {" + plain + "}";
   if (scene.law == "fibre_reinforced") {
     const auto m = Law<palpate::FibreReinforced<palpate::NeoHookean>>::make(s);
     return ".base = {" + plain + "}, " + member("k1", m.k1);

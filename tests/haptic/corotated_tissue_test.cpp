@@ -18,12 +18,12 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-using CorotatedMaterial = Corotational<LinearElastic>;
+using CorotatedMaterial = Corotational;
 using CorotatedTissue = HapticFEModel<Tet4, CorotatedMaterial, Implicit<MatrixFreeCG<BlockJacobi>>>;
-using SolvedTissue = HapticFEModel<Tet4, CorotatedMaterial, Implicit<Newton<SparseCholesky>>>;
+using SolvedTissue = HapticFEModel<Tet4, CorotatedMaterial, Implicit<Newton>>;
 constexpr double tip = 0.012;
 const Vector3 slab_size(0.06, 0.06, 0.03);
-const CorotatedMaterial soft_material{{5e3, 0.45, 1000.0}};
+const CorotatedMaterial soft_material{5e3, 0.45, 1000.0};
 
 Mesh<Tet4> slab() {
   return box_tet4(slab_size, {6, 6, 3});

@@ -30,7 +30,7 @@ Scene pad_scene() {
   return Scene().fix("z0").touch("z1");
 }
 template <class Material>
-using Soft = HapticFEModel<Tet4, Material, Implicit<Newton<SparseCholesky>>>;
+using Soft = HapticFEModel<Tet4, Material, Implicit<Newton>>;
 
 ImplicitParameters with_step(double step) {
   return {.step = step};

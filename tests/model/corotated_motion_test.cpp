@@ -13,11 +13,11 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-using Elastic = Corotational<LinearElastic>;
+using Elastic = Corotational;
 
 HyperelasticBody<Tet4, Elastic> pad(double poisson_ratio = 0.4) {
   return make_hyperelastic_body(box_tet4({0.04, 0.04, 0.08}, {2, 2, 4}),
-                                std::vector<Elastic>{{{5e3, poisson_ratio, 1000.0}}});
+                                std::vector<Elastic>{{5e3, poisson_ratio, 1000.0}});
 }
 /// Fixed at the bottom, under its own weight.
 Scene standing() {
@@ -31,7 +31,7 @@ detail::CorotatedMotionOptions to_the_end(TimeScheme scheme = TimeScheme::implic
   options.solve = {2000, 1e-13};
   return options;
 }
-using Exact = detail::CorotatedMotion<LinearElastic, double>;
+using Exact = detail::CorotatedMotion<double>;
 
 Vector3 momentum_of(const Exact& m) {
   Vector3 sum = Vector3::Zero();
@@ -87,7 +87,7 @@ TEST_CASE("one linearisation per step follows the converged steps, closer with s
 TEST_CASE("single precision with a tolerance of one percent stays close to the reference", "[model][corotated]") {
   detail::CorotatedMotionOptions options;
   options.solve.tolerance = 1e-2;
-  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
+  detail::CorotatedMotion<float> motion(pad(), standing(), options);
   Exact reference(pad(), standing(), to_the_end());
   double apart = 0.0;
   for (int k = 0; k < 200; ++k) {
@@ -111,8 +111,8 @@ TEST_CASE("the motion settles in the equilibrium for any step and preconditioner
   options.mass_damping = 20.0;
   options.solve.tolerance = 1e-2;
   settles(Exact(pad(), standing(), options), 1e-2, 1e-9);
-  settles(detail::CorotatedMotion<LinearElastic, float>(pad(), standing(), options), 1e-2, 1e-4);
-  settles(detail::CorotatedMotion<LinearElastic, double, CorotatedFactor>(pad(), standing(), options), 5e-2, 1e-9);
+  settles(detail::CorotatedMotion<float>(pad(), standing(), options), 1e-2, 1e-4);
+  settles(detail::CorotatedMotion<double, CorotatedFactor>(pad(), standing(), options), 5e-2, 1e-9);
   options.stiffness_damping = 1e-2;
   settles(Exact(pad(), standing(), options), 2e-3, 1e-9);
 }
@@ -157,7 +157,7 @@ TEST_CASE("bodies with random displacements settle without inverted elements", "
   testing::Random random(12);
   detail::CorotatedMotionOptions options;
   options.mass_damping = 5.0;
-  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing(), options);
+  detail::CorotatedMotion<float> motion(pad(), standing(), options);
   int upright = 0;
   for (int run = 0; run < 20; ++run) {
     VectorX u(motion.size());
@@ -180,8 +180,8 @@ TEST_CASE("a pad pressed by two fifths of its height keeps all elements upright"
         patch.push_back(static_cast<NodeId>(i));
     detail::CorotatedMotionOptions options;
     options.mass_damping = 20.0;
-    detail::CorotatedMotion<LinearElastic, float> motion(
-        make_hyperelastic_body(mesh, std::vector<Elastic>{{{5e3, nu, 1000.0}}}), Scene().fix("z0").fix(patch), options);
+    detail::CorotatedMotion<float> motion(make_hyperelastic_body(mesh, std::vector<Elastic>{{5e3, nu, 1000.0}}),
+                                          Scene().fix("z0").fix(patch), options);
     VectorX prescribed = VectorX::Zero(motion.size());
     double smallest = 1.0;
     for (int k = 1; k <= 1000; ++k) {  // 13 mm within 0.65 s
@@ -259,8 +259,8 @@ TEST_CASE("invalid steps change nothing", "[model][corotated][E1]") {
 }
 
 TEST_CASE("co-rotated steps do not allocate", "[model][corotated]") {
-  detail::CorotatedMotion<LinearElastic, float> motion(pad(), standing());
-  detail::CorotatedMotion<LinearElastic, double, CorotatedFactor> rotated(pad(), standing());
+  detail::CorotatedMotion<float> motion(pad(), standing());
+  detail::CorotatedMotion<double, CorotatedFactor> rotated(pad(), standing());
   const VectorX load = motion.body().load;
   const testing::AllocationScope scope;
   for (int k = 0; k < 20; ++k) {
@@ -298,7 +298,7 @@ TEST_CASE("co-rotated motion refuses what it cannot do", "[model][corotated]") {
 TEST_CASE("a correction that did not converge is not applied", "[model][corotated]") {
   detail::CorotatedMotionOptions options;
   options.solve.maximum_iterations = 1;
-  detail::CorotatedMotion<LinearElastic, double> motion(pad(), standing(), options);
+  detail::CorotatedMotion<double> motion(pad(), standing(), options);
   REQUIRE(motion.step(1e-2).taken);
   const VectorX u = motion.displacement(), load = motion.body().load;
   CHECK_FALSE(motion.correct(load));

@@ -37,10 +37,7 @@ auto block_of() {
 /// Young's modulus 5 kPa, Poisson ratio 0.4.
 template <class M>
 M material(double nu = 0.4) {
-  if constexpr (requires(M m) { m.base; })
-    return M{{5e3, nu, 1000.0}};
-  else
-    return M{5e3, nu, 1000.0};
+  return M{5e3, nu, 1000.0};
 }
 inline Scene constrained_block() {
   return Scene().fix("z0").touch("z1");

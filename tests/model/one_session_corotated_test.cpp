@@ -7,6 +7,6 @@
 using namespace palpate;
 
 TEST_CASE("one session program: co-rotational motion without a factor", "[model][door]") {
-  using Model = HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>;
+  using Model = HapticFEModel<Tet4, Corotational, Implicit<MatrixFreeCG<BlockJacobi>>>;
   one_session::run<Model>();
 }

@@ -9,6 +9,6 @@
 using namespace palpate;
 
 TEST_CASE("one session program: implicit motion by Newton's method", "[model][door]") {
-  using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+  using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton>>;
   one_session::run<Model>();
 }

@@ -12,12 +12,11 @@ using namespace palpate;
 
 namespace {
 
-using Renewed = detail::CorotatedMotion<LinearElastic, double, RenewedFactor>;
-using Rotated = detail::CorotatedMotion<LinearElastic, double, CorotatedFactor>;
+using Renewed = detail::CorotatedMotion<double, RenewedFactor>;
+using Rotated = detail::CorotatedMotion<double, CorotatedFactor>;
 
-HyperelasticBody<Tet4, Corotational<LinearElastic>> column() {
-  return make_hyperelastic_body(box_tet4({0.02, 0.02, 0.08}, {2, 2, 8}),
-                                std::vector<Corotational<LinearElastic>>{{{5e3, 0.4, 1000.0}}});
+HyperelasticBody<Tet4, Corotational> column() {
+  return make_hyperelastic_body(box_tet4({0.02, 0.02, 0.08}, {2, 2, 8}), std::vector<Corotational>{{5e3, 0.4, 1000.0}});
 }
 /// Fixed at both ends, with the upper end rotated: a twist that a factor at rest does not represent.
 template <class Motion>

@@ -107,7 +107,7 @@ TEST_CASE("Newton steps too flag a soft part out of equilibrium beside a stiff o
   }
   const auto sheared = [&](int most_iterations) {
     const auto motion =
-        SolverTraits<Implicit<Newton<SparseCholesky>>>::make_motion(
+        SolverTraits<Implicit<Newton>>::make_motion(
             make_hyperelastic_body(mesh, laws(1e5)), scene,
             {.settle = false, .newton = {.maximum_iterations = most_iterations, .tolerance = 1e-12}}, {})
             .motion;

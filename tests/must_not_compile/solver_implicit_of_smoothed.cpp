@@ -7,9 +7,9 @@
 using namespace palpate;
 
 #ifdef PALPATE_GOOD_TWIN
-using Model = HapticFEModel<Tet4, StVenantKirchhoff, Implicit<Newton<SparseCholesky>>>;
+using Model = HapticFEModel<Tet4, StVenantKirchhoff, Implicit<Newton>>;
 #else
-using Model = HapticFEModel<Smoothed<Tet4>, StVenantKirchhoff, Implicit<Newton<SparseCholesky>>>;
+using Model = HapticFEModel<Smoothed<Tet4>, StVenantKirchhoff, Implicit<Newton>>;
 #endif
 
 void make(const Mesh<Tet4>& mesh, const Scene& scene) {

@@ -6,7 +6,7 @@
 using namespace palpate;
 
 #ifdef PALPATE_GOOD_TWIN
-using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton<SparseCholesky>>>;
+using Model = HapticFEModel<Tet10, NeoHookean, Implicit<Newton>>;
 #else
 using Model = HapticFEModel<Tet10, NeoHookean, Implicit<MatrixFreeCG<BlockJacobi>>>;
 #endif

@@ -9,7 +9,7 @@ using namespace palpate;
 #ifdef PALPATE_GOOD_TWIN
 using Model = HapticFEModel<Tet4, LinearElastic, Stiffening<SparseCholesky>>;
 #else
-using Model = HapticFEModel<Tet4, LinearElastic, Stiffening<Implicit<Newton<SparseCholesky>>>>;
+using Model = HapticFEModel<Tet4, LinearElastic, Stiffening<Implicit<Newton>>>;
 #endif
 
 void make(const Mesh<Tet4>& mesh, const Scene& scene) {

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   Scene scene;
   scene.fix("z0").touch("z1");
 #ifdef TINY_SOFT
-  HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>> tissue(mesh, scene, {10e3, 0.45, 1000.0});
+  HapticFEModel<Tet4, NeoHookean, Implicit<Newton>> tissue(mesh, scene, {10e3, 0.45, 1000.0});
   HapticServo servo(tissue, SphereTool{.radius = 4e-3});
   return press(servo, ticks);
 #elif defined(TINY_SOLVER)

@@ -26,6 +26,14 @@ struct EssentialConditions {
   Index dof_count() const noexcept { return static_cast<Index>(free_index.size()); }
   Index free_count() const noexcept { return static_cast<Index>(free_dofs.size()); }
 
+  /// Throws unsupported unless the same components are prescribed; values may differ.
+  void require_components(const EssentialConditions& other) const {
+    if (constrained != other.constrained)
+      raise(SetupErrorKind::unsupported,
+            "the new scene prescribes other components than the one the model was made for",
+            "Values may change, the set of prescribed components may not: make a new model");
+  }
+
   /// Copies the entries of the free dofs from a full vector. No allocation when `free_part` has its size.
   void gather(const VectorX& full, VectorX& free_part) const noexcept {
     for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];

@@ -3,7 +3,6 @@
 
 #include <palpate/cut/cuttable_tissue.hpp>
 #include <palpate/cut/cut_topology.hpp>
-#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 #include <palpate/model/policies.hpp>
 #include <palpate/model/rendering/visual_surface.hpp>
@@ -16,8 +15,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-template <class E, class M, class Solver>
-class HapticFEModel;
 template <class Inner>
 struct Cuttable;
 
@@ -163,34 +160,11 @@ struct Cuttable {
                 "palpate/cut/cuttable_moving.hpp Cuttable<Implicit<QuasiNewton<>>>");
 };
 
-/// Linear static tissue that can be cut; see CuttableTissue.
-template <class E, class M, class Inner>
-class HapticFEModel<E, M, Cuttable<Inner>> : public CuttableTissue<E> {
-  static_assert(sizeof(Cuttable<Inner>) > 0);  // instantiates Cuttable first, so that its error about Inner comes first
-  static_assert(!detail::HasSmoothedStrain<E>,
-                "palpate: a cut changes the averages of smoothed elements far from it: choose Tet4 or Tet10");
-  static_assert(LinearMaterial<M>, "palpate: tissue that is cut needs a LinearMaterial, for example LinearElastic");
-
- public:
-  using ElementType = E;
-  using MaterialType = M;
-  using Parameters = CutParameters;
-
-  /// One material for the whole body. Throws as admission, assembly and factorisation; unconstrained when a part is not
-  /// constrained, unsupported for a cache file.
-  template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
-                const Parameters& parameters = {})
-      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
-  /// One material per region.
-  template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                const SetupOptions& options = {}, const Parameters& parameters = {})
-      : CuttableTissue<E>(options) {
-    this->set_up(scene,
-                 detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
-                 parameters);
-  }
+template <class Inner>
+struct SolverTraits<Cuttable<Inner>> {
+  static_assert(sizeof(Cuttable<Inner>) > 0);  // its error about Inner comes first
+  template <class E, class M>
+  using Tissue = CuttableTissue<E>;
 };
 
 }}  // namespace palpate

@@ -3,6 +3,7 @@
 
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/cut/cuttable_moving_tissue.hpp>
+#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -14,28 +15,22 @@ inline constexpr bool has_cuts<Implicit<QuasiNewton<S>>> = true;
 
 }  // namespace detail
 
-/// Moving tissue at large strain that can be cut; see CuttableMovingTissue.
+/// Moving tissue at large strain that can be cut; see CuttableMovingTissue. Base of HapticFEModel on
+/// Cuttable<Implicit<QuasiNewton<S>>>.
 template <class E, class M, class S>
-class HapticFEModel<E, M, Cuttable<Implicit<QuasiNewton<S>>>> : public CuttableMovingTissue<E> {
+class CuttableMotionTissue : public CuttableMovingTissue<E> {
   static_assert(HyperelasticMaterial<M>,
                 "palpate: moving tissue that is cut needs a hyperelastic material without memory, for example "
                 "NeoHookean");
 
  public:
-  using ElementType = E;
-  using MaterialType = M;
   using Parameters = QuasiNewtonParameters;
 
-  /// One material for the whole body. Throws as moving models (model/moving/moving_model.hpp); unsupported for
-  /// `large_strain_within` and `renew_factor`.
+ protected:
+  /// Throws as MotionTissue; unsupported for `large_strain_within` and `renew_factor`.
   template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
-                const Parameters& parameters = {})
-      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
-  /// One material per region.
-  template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                const SetupOptions& options = {}, const Parameters& parameters = {})
+  CuttableMotionTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                       const SetupOptions& options, const Parameters& parameters)
       : CuttableMovingTissue<E>(options) {
     detail::require_step(parameters.step);
     if (parameters.large_strain_within < infinity || parameters.renew_factor)
@@ -55,14 +50,12 @@ class HapticFEModel<E, M, Cuttable<Implicit<QuasiNewton<S>>>> : public CuttableM
       this->elastic_body().require_constrained(this->elastic_body().conditions(this->scene()));
     this->template set_up_cuts<M, S>(std::move(body), boundary, touchable, parameters);
   }
+};
 
-  /// The admitted mesh before any cut, in the frame of `origin()`.
-  const Mesh<E>& mesh() const noexcept { return body().mesh; }
-  const Body<E>& body() const noexcept { return detail::element_body<E>(this->elastic_body()).body(); }
-  /// The boundary faces of that mesh, which belong to one element only.
-  const std::vector<BoundaryFace>& boundary() const noexcept {
-    return detail::element_body<E>(this->elastic_body()).boundary();
-  }
+template <class S>
+struct SolverTraits<Cuttable<Implicit<QuasiNewton<S>>>> {
+  template <class E, class M>
+  using Tissue = CuttableMotionTissue<E, M, S>;
 };
 
 }}  // namespace palpate

@@ -170,8 +170,8 @@ class CuttableMovingTissue : public MovingTissue {
 
   /// An element takes its loads with it; copies of a node carry the loads of their elements.
   VectorX applied_load(const Scene& scene) const override {
-    const auto& whole = detail::element_body<E>(this->elastic_body());
-    const detail::ElementLoads<E> loads(whole.body().mesh, whole.boundary(), scene);
+    const detail::ElementLoads<E> loads(detail::mesh_of<E>(this->elastic_body()),
+                                        detail::boundary_of<E>(this->elastic_body()), scene);
     const CutTopology<E>& topology = body_->topology;
     VectorX sum = VectorX::Zero(3 * topology.mesh().node_count());
     sum.head(loads.nodal_load.size()) = loads.nodal_load;

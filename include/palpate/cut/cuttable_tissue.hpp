@@ -12,6 +12,7 @@
 #include <palpate/cut/detail/cut_preparation.hpp>
 #include <palpate/cut/detail/cut_process.hpp>
 #include <palpate/core/thread_exchange.hpp>
+#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/model_base.hpp>
 
@@ -37,7 +38,12 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// Neither copied nor moved. Satisfies TissueModel; one session at a time.
 template <Element E>
 class CuttableTissue : public ModelBase {
+  static_assert(!detail::HasSmoothedStrain<E>,
+                "palpate: a cut changes the averages of smoothed elements far from it: choose Tet4 or Tet10");
+
  public:
+  using Parameters = CutParameters;
+
   // Any thread
 
   /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
@@ -104,12 +110,9 @@ class CuttableTissue : public ModelBase {
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
     Scene changed = this->mapped(scene, triangles_);
-    if (elastic_body().conditions(changed).constrained != elastic_body().conditions(loaded_).constrained)
-      raise(SetupErrorKind::unsupported,
-            "the new scene prescribes other components than the one the model was made for",
-            "Values may change, the set of prescribed components may not: make a new model");
+    elastic_body().conditions(changed).require_components(elastic_body().conditions(loaded_));
     std::string others = changed.loads_in_words();
-    process_->set_loads(boundary(), changed.gravity(local(scene.gravity(), pose())));
+    process_->set_loads(detail::boundary_of<E>(elastic_body()), changed.gravity(local(scene.gravity(), pose())));
     loaded_ = std::move(changed);
     keep_loads(scene.gravity(), others);
   }
@@ -133,20 +136,12 @@ class CuttableTissue : public ModelBase {
   void reset() {
     const std::scoped_lock lock(changes_);
     std::string others = scene().loads_in_words();
-    process_->reset(boundary(), scene());
+    process_->reset(detail::boundary_of<E>(elastic_body()), scene());
     if (const detail::CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     failed_.store(false, std::memory_order_release);
     loaded_ = scene();
     place(Eigen::Isometry3d::Identity());
     keep_loads(scene().gravity(), others);
-  }
-
-  /// The admitted mesh before any cut, in the frame of `origin()`.
-  const Mesh<E>& mesh() const noexcept { return body().mesh; }
-  const Body<E>& body() const noexcept { return detail::element_body<E>(elastic_body()).body(); }
-  /// The boundary faces of that mesh, which belong to one element only.
-  const std::vector<BoundaryFace>& boundary() const noexcept {
-    return detail::element_body<E>(elastic_body()).boundary();
   }
 
   // The thread that ticks
@@ -194,23 +189,34 @@ class CuttableTissue : public ModelBase {
   TissueClaim& claim() noexcept { return claim_; }
 
  protected:
-  explicit CuttableTissue(const SetupOptions& options) : ModelBase(options) {
+  /// Throws as admission, assembly and factorisation; unconstrained when a part is not constrained, unsupported for a
+  /// cache file.
+  template <MeshOf<E> Given, class M>
+  CuttableTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                 const SetupOptions& options, const CutParameters& parameters)
+      : ModelBase(options) {
+    static_assert(LinearMaterial<M>, "palpate: tissue that is cut needs a LinearMaterial, for example LinearElastic");
     if (!options.cache_file.empty())
       raise(SetupErrorKind::unsupported, "a cache file for tissue that is cut",
             "Leave cache_file empty; a cache file does not store cuts");
+    set_up(scene, detail::admit_body<E>(mesh, scene, materials, options.admission, limits(), setup_report()),
+           parameters);
   }
 
+ private:
   /// The set-up after admission. Throws as prepare_cut and CutProcess.
   void set_up(const Scene& scene, detail::AdmittedBody admitted, const CutParameters& parameters) {
     triangles_ = admit(scene, std::move(admitted)).triangles;
     const ScopedIdTranslation translation(original_ids());
     elastic_body().report_locking(setup_report());
-    elements_ = mesh().element_count();
+    const Body<E>& body = detail::body_of<E>(elastic_body());
+    elements_ = body.mesh.element_count();
     loaded_ = this->scene();
     std::optional<Selection> cuttable;
     if (parameters.cuttable) cuttable = palpate::mapped(*parameters.cuttable, node_map(), origin());
     process_ = std::make_unique<detail::CutProcess<E>>(
-        detail::prepare_cut(body(), boundary(), this->scene(), cuttable, original_ids()), parameters, limits(),
+        detail::prepare_cut(body, detail::boundary_of<E>(elastic_body()), this->scene(), cuttable, original_ids()),
+        parameters, limits(),
         [this](detail::CutView&& made) {
           views_.back() = std::move(made);  // frees views that no tick can access any more
           views_.publish();
@@ -221,14 +227,13 @@ class CuttableTissue : public ModelBase {
     setup_report().free_dofs = elastic_body().conditions(this->scene()).free_count();
     setup_report().condensed_dofs = setup_report().free_dofs - setup_report().kept_dofs;
     detail::report_displacement(elastic_body().positions(),
-                                process_->displacement_with({}).head(3 * mesh().node_count()), setup_report());
+                                process_->displacement_with({}).head(3 * body.mesh.node_count()), setup_report());
   }
 
- private:
   void load_by(const Vector3& gravity, const Eigen::Isometry3d& pose) {
     const ScopedIdTranslation translation(original_ids());
     Scene changed = loaded_;
-    process_->set_loads(boundary(), changed.gravity(local(gravity, pose)));
+    process_->set_loads(detail::boundary_of<E>(elastic_body()), changed.gravity(local(gravity, pose)));
   }
   const detail::CutView& view() const noexcept { return views_.front(); }
   detail::CutContact& contact() const noexcept { return *view().contact; }

@@ -37,43 +37,37 @@ PALPATE_ALWAYS_INLINE Tensor3<S> corotated_stress(const Lame<S>& c, const Tensor
 /// that of J = det F, so that compressed elements resist until they are flat; with tr(R^T F - I) in its place, as in
 /// Hooke's law of the stretch, an element can be pressed flat at constant energy. Finite for every F; inverted elements
 /// are pushed back. Where the closest rotation is not unique (an element pressed to a line, or inverted so far that two
-/// stretches cancel) the stress jumps. Isotropic bases only: others have no Lame constants. Cost of stress: one closest
+/// stretches cancel) the stress jumps. Cost of stress: one closest
 /// rotation, see docs/materials.md.
-template <class Base = LinearElastic>
-requires LinearMaterial<Base> && requires(const Base& b) {
-  { b.lame_lambda() } -> std::same_as<double>;
-  { b.shear_modulus() } -> std::same_as<double>;
-}
 struct Corotational {
-  Base base{};
-  double density = base.density;  ///< rho at rest [kg/m^3]; by default that of the base
+  double youngs_modulus = 0.0;  ///< E at small strain [Pa]
+  double poisson_ratio = 0.0;   ///< nu at small strain [-]
+  double density = 0.0;         ///< rho at rest [kg/m^3]
 
   static constexpr bool survives_inversion = true;
 
-  Matrix6 rest_elasticity() const noexcept { return base.elasticity(); }
-
-  /// Checks as the base, and the density.
-  std::optional<SetupProblem> check() const {
-    Base with_density = base;
-    with_density.density = density;
-    return with_density.check();
-  }
+  /// The same material at small strain.
+  LinearElastic small_strain() const noexcept { return {youngs_modulus, poisson_ratio, density}; }
+  Matrix6 rest_elasticity() const noexcept { return small_strain().elasticity(); }
+  /// Checks as LinearElastic.
+  std::optional<SetupProblem> check() const { return small_strain().check(); }
 
   template <class S>
   PALPATE_ALWAYS_INLINE S energy(const Tensor3<S>& f) const noexcept {
-    return detail::corotated_energy(detail::lame<S>(base), f - closest_rotation(f), determinant(f) - S(1));
+    return detail::corotated_energy(detail::lame<S>(small_strain()), f - closest_rotation(f), determinant(f) - S(1));
   }
 
   template <class S>
   PALPATE_ALWAYS_INLINE Tensor3<S> stress(const Tensor3<S>& f) const noexcept {
     const Tensor3<S> c = cofactor(f);
-    return detail::corotated_stress(detail::lame<S>(base), f - closest_rotation(f), c, determinant(f, c) - S(1));
+    return detail::corotated_stress(detail::lame<S>(small_strain()), f - closest_rotation(f), c,
+                                    determinant(f, c) - S(1));
   }
 
   /// Exact, with dR/dF. Indefinite where elements are compressed or have much changed their volume. dR/dF is infinite
   /// where two stretches cancel; near that point their sum is bounded below by 1e-6.
   Matrix9 tangent(const Tensor3<double>& f) const noexcept {
-    const double lambda = base.lame_lambda(), mu = base.shear_modulus();
+    const auto [lambda, mu] = detail::lame<double>(small_strain());
     const Tensor3<double> r = closest_rotation(f), c = cofactor(f);
     Matrix9 t = (-2.0 * mu) * rotation_derivative(f, r);
     t += (lambda * (determinant(f, c) - 1.0)) * detail::cofactor_derivative(f);
@@ -105,6 +99,6 @@ struct Corotational {
   }
 };
 
-static_assert(HyperelasticMaterial<Corotational<LinearElastic>>);
+static_assert(HyperelasticMaterial<Corotational>);
 
 }}  // namespace palpate

@@ -16,60 +16,108 @@ struct Mesh;
 template <Element E>
 struct Body;
 struct BoundaryFace;
+template <class E, class M, class Solver>
+class StaticTissue;
 
 namespace detail {
 
-/// Readable compile-time checks of the arguments of the primary template, and its base class.
-template <class E, class M, class Solver>
-struct StaticModel {
+/// Readable compile-time checks of element and material.
+template <class E, class M>
+struct ModelArguments {
   static_assert(Element<E>,
                 "palpate: the first argument of HapticFEModel is an element, for example Smoothed<Tet4>; "
                 "for a user-defined one see the concept Element");
+  static_assert(has_triangulated_faces<E>(),
+                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example LinearElastic");
+};
+
+/// The base of a model: StaticTissue, or what the traits of the solver name. For motions see
+/// model/moving/moving_model.hpp.
+template <class E, class M, class Solver>
+struct TissueOf : ModelArguments<E, M> {
+  using Type = StaticTissue<E, M, Solver>;
+};
+template <class E, class M, class Solver>
+requires requires {
+  typename SolverTraits<Solver>::template Tissue<E, M>;
+}
+struct TissueOf<E, M, Solver> : ModelArguments<E, M> {
+  using Type = typename SolverTraits<Solver>::template Tissue<E, M>;
+};
+
+/// Readable compile-time checks of a static solver, and the base of its tissue.
+template <class M, class Solver>
+struct StaticBase {
   static_assert(SolverPolicy<Solver>,
                 "palpate: the third argument of HapticFEModel is a solver: Condensed<SelectiveInverse>, SparseCholesky "
                 "...; Implicit and Explicit come with palpate/soft.hpp, Cuttable with palpate/cut.hpp; for a "
                 "user-defined one specialise SolverTraits");
   static_assert(!Material<M> || !SolverPolicy<Solver> || LinearMaterial<M>,
                 "palpate: this solver is for statics at small strain, which takes a LinearMaterial; for large strain "
-                "or viscoelasticity choose Implicit<Newton<SparseCholesky>>");
-  using Base = LinearTissue<typename SolverTraits<Solver>::Scalar>;
+                "or viscoelasticity choose Implicit<Newton>");
+  using Type = LinearTissue<typename SolverTraits<Solver>::Scalar>;
 };
+
+// Definitions: model/detail/element_body.hpp.
+template <Element E>
+const Mesh<E>& mesh_of(const ElasticBody& body) noexcept;
+template <Element E>
+const Body<E>& body_of(const ElasticBody& body) noexcept;
+template <Element E>
+const std::vector<BoundaryFace>& boundary_of(const ElasticBody& body) noexcept;
 
 }  // namespace detail
 
-/// Tissue of element `E`, material `M` and solver `Solver`. The primary template is linear and static; moving, cut and
-/// stiffening tissue are specialisations on their solvers, with the same constructor and functions. The arguments
-/// determine assembly, quadrature and condensation. The model is prepared once and copies the data it needs from mesh
-/// and scene. Afterwards only named calls change it (loads, prescribed values, gravity, pose, reset). None of them
-/// refactorises, and none may run during a tick. Satisfies TissueModel. The base LinearTissue contains the parts that
-/// do not depend on the types. Frames: see ModelBase.
+/// Parameters of a model whose solver has none.
+struct NoParameters {};
+
+/// Linear static tissue of element `E`, material `M` and a solver with SolverTraits::make. Base of HapticFEModel on
+/// such a solver.
+template <class E, class M, class Solver>
+class StaticTissue : public detail::StaticBase<M, Solver>::Type {
+ public:
+  using Parameters = NoParameters;
+
+ protected:
+  template <MeshOf<E> Given>
+  StaticTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options,
+               const Parameters& = {});
+};
+
+/// Tissue of element `E`, material `M` and solver `Solver`. These determine assembly, quadrature, condensation and
+/// motion, and by that the base with most functions: LinearTissue, MovingTissue, CuttableTissue or
+/// CuttableMovingTissue. The model is prepared once and copies the data it needs from mesh and scene. Afterwards only
+/// named calls change it (loads, prescribed values, gravity, pose, reset, cuts, steps). Satisfies TissueModel. Frames:
+/// see ModelBase. A solver whose traits name a class template `Tissue<E, M>` is that class; it has Parameters and a
+/// constructor like the second one below.
 template <class E, class M, class Solver = Condensed<SelectiveInverse>>
-class HapticFEModel : public detail::StaticModel<E, M, Solver>::Base {
-  using Tissue = typename detail::StaticModel<E, M, Solver>::Base;
+class HapticFEModel : public detail::TissueOf<E, M, Solver>::Type {
+  using Tissue = typename detail::TissueOf<E, M, Solver>::Type;
 
  public:
-  static_assert(detail::has_triangulated_faces<E>(),
-                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
   using ElementType = E;
   using MaterialType = M;
-  using Traits = SolverTraits<Solver>;
+  /// Of the solver: its step, tolerances, curves ...
+  using Parameters = typename Tissue::Parameters;
 
   /// One material everywhere. Throws SetupError; see docs/errors.md for the kinds.
-  template <MeshOf<E> Mesh>
-  HapticFEModel(const Mesh& mesh, const Scene& scene, const M& material, const SetupOptions& options = {});
-
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
+                const Parameters& parameters = {})
+      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
   /// One material per region.
-  template <MeshOf<E> Mesh>
-  HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                const SetupOptions& options = {});
+  template <MeshOf<E> Given>
+  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                const SetupOptions& options = {}, const Parameters& parameters = {})
+      : Tissue(mesh, scene, materials, options, parameters) {}
 
-  /// The admitted mesh, in the frame of `origin()`.
-  const Mesh<E>& mesh() const noexcept;
-  /// The mesh with its materials evaluated (assembly/body.hpp).
-  const Body<E>& body() const noexcept;
+  /// The admitted mesh before any cut, in the frame of `origin()`.
+  const Mesh<E>& mesh() const noexcept { return detail::mesh_of<E>(this->elastic_body()); }
+  /// The mesh with its materials, linearised at small strain (assembly/body.hpp).
+  const Body<E>& body() const noexcept { return detail::body_of<E>(this->elastic_body()); }
   /// The boundary faces: faces of the mesh that belong to one element only.
-  const std::vector<BoundaryFace>& boundary() const noexcept;
+  const std::vector<BoundaryFace>& boundary() const noexcept { return detail::boundary_of<E>(this->elastic_body()); }
 };
 
 }}  // namespace palpate

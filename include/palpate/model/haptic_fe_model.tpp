@@ -15,32 +15,13 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 template <class E, class M, class Solver>
-template <MeshOf<E> Mesh>
-HapticFEModel<E, M, Solver>::HapticFEModel(const Mesh& mesh, const Scene& scene, const M& material,
-                                           const SetupOptions& options)
-    : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options) {}
-
-template <class E, class M, class Solver>
-template <MeshOf<E> Mesh>
-HapticFEModel<E, M, Solver>::HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                                           const SetupOptions& options)
-    : Tissue(options) {
-  this->set_up(scene,
-               detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
-               detail::make_stiffness<E, typename Traits::Assembly>, detail::solver_recipe<Solver>(), options);
-}
-
-template <class E, class M, class Solver>
-const Mesh<E>& HapticFEModel<E, M, Solver>::mesh() const noexcept {
-  return body().mesh;
-}
-template <class E, class M, class Solver>
-const Body<E>& HapticFEModel<E, M, Solver>::body() const noexcept {
-  return detail::element_body<E>(this->elastic_body()).body();
-}
-template <class E, class M, class Solver>
-const std::vector<BoundaryFace>& HapticFEModel<E, M, Solver>::boundary() const noexcept {
-  return detail::element_body<E>(this->elastic_body()).boundary();
+template <MeshOf<E> Given>
+StaticTissue<E, M, Solver>::StaticTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                                         const SetupOptions& options, const Parameters&)
+    : detail::StaticBase<M, Solver>::Type(options) {
+  this->set_up(
+      scene, detail::admit_body<E>(mesh, scene, materials, options.admission, this->limits(), this->setup_report()),
+      detail::make_stiffness<E, typename SolverTraits<Solver>::Assembly>, detail::solver_recipe<Solver>(), options);
 }
 
 }}  // namespace palpate

@@ -28,7 +28,7 @@ double use(const Material& material) {
 int main() {
   const LinearElastic linear{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0};
   const NeoHookean soft{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0};
-  const Corotational<LinearElastic> corotated{linear};
+  const Corotational corotated{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060.0};
   double sum = use<HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>>(linear);
   sum += use<HapticFEModel<Tet4, LinearElastic, Condensed<ConjugateGradient>>>(linear);
   sum += use<HapticFEModel<Tet4, LinearElastic, WithAssembly<ConjugateGradient, MatrixFree>>>(linear);
@@ -36,8 +36,8 @@ int main() {
   sum += use<HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>>(linear);
   sum += use<HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<float>>>>(soft);
   sum += use<HapticFEModel<Smoothed<Tet4>, NeoHookean, Cuttable<Implicit<QuasiNewton<float>>>>>(soft);
-  sum += use<HapticFEModel<Tet4, NeoHookean, Implicit<Newton<SparseCholesky>>>>(soft);
-  sum += use<HapticFEModel<Tet4, Corotational<LinearElastic>, Implicit<MatrixFreeCG<BlockJacobi>>>>(corotated);
+  sum += use<HapticFEModel<Tet4, NeoHookean, Implicit<Newton>>>(soft);
+  sum += use<HapticFEModel<Tet4, Corotational, Implicit<MatrixFreeCG<BlockJacobi>>>>(corotated);
   sum += use<HapticFEModel<Tet4, NeoHookean, Explicit<CentralDifference>>>(soft);
   return sum >= 0.0 ? 0 : 1;
 }

@@ -32,16 +32,16 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// Gauss-Newton matrix of lambda/2 (J - 1)^2. With the volume part of R K R^T instead, steps diverge at a Poisson ratio
 /// of 0.49. Each rotation is computed from that of the previous state. Blocks, sums and vectors as in
 /// BatchedTetrahedra; S = float computes products and forces in single precision. No allocation after construction.
-template <class Base = LinearElastic, class S = double, int N = 64 / sizeof(S)>
+template <class S = double, int N = 64 / sizeof(S)>
 class CorotatedTetrahedra {
  public:
-  using Material = Corotational<Base>;
+  using Material = Corotational;
 
   CorotatedTetrahedra() = default;
   /// Throws as make_batches.
   explicit CorotatedTetrahedra(const HyperelasticBody<Tet4, Material>& body, const SetupLimits& limits = {})
       : layout_(make_batches<S, N>(body, 280.0, limits)) {
-    for (const Material& material : body.materials) materials_.push_back(lame<Lane>(material.base));
+    for (const Material& material : body.materials) materials_.push_back(lame<Lane>(material.small_strain()));
     laws_ = body.materials;
     range_.resize(layout_.batches.size());
     rows_.assign(4 * layout_.nodes.size(), S(0));

@@ -52,8 +52,16 @@ class ElementBody final : public ElasticBody {
 };
 
 template <Element E>
-const ElementBody<E>& element_body(const ElasticBody& body) noexcept {
-  return static_cast<const ElementBody<E>&>(body);
+const Body<E>& body_of(const ElasticBody& body) noexcept {
+  return static_cast<const ElementBody<E>&>(body).body();
+}
+template <Element E>
+const Mesh<E>& mesh_of(const ElasticBody& body) noexcept {
+  return body_of<E>(body).mesh;
+}
+template <Element E>
+const std::vector<BoundaryFace>& boundary_of(const ElasticBody& body) noexcept {
+  return static_cast<const ElementBody<E>&>(body).boundary();
 }
 
 /// The isotropic materials of elements, for the contact surface before them; unknown where they are not isotropic.

@@ -172,9 +172,8 @@ struct SolverTraits<Explicit<Scheme>> {
   template <class MaterialBody>
   static PreparedMotion make_motion(MaterialBody body, const Scene& scene, const Parameters& p,
                                     const SetupLimits& limits) {
-    static_assert(
-        !detail::has_history<MaterialBody>,
-        "palpate: explicit steps do not support viscoelastic materials; use Implicit<Newton<SparseCholesky>>");
+    static_assert(!detail::has_history<MaterialBody>,
+                  "palpate: explicit steps do not support viscoelastic materials; use Implicit<Newton>");
     const Body rest = detail::rest_body(body);
     return make_motion(rest, std::move(body), scene, p, limits);
   }

@@ -1,4 +1,4 @@
-// Solver policies for dynamics with implicit time steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>.
+// Solver policies for dynamics with implicit time steps: Implicit<Newton>, Implicit<MatrixFreeCG<...>>.
 #pragma once
 
 #include <palpate/model/moving/detail/corotated_motion.hpp>
@@ -58,18 +58,14 @@ inline MotionStep ImplicitMotion::step(double h) noexcept {
 
 /// Newton's method on the incremental potential of a step, with a factorisation in every iteration. Supports all
 /// elements except smoothed ones, all materials and all step lengths. See ImplicitDynamics.
-template <class Factor>
-struct Newton {
-  static_assert(std::same_as<Factor, SparseCholesky>,
-                "palpate: Newton's method takes a factor: Newton<SparseCholesky>");
-};
+struct Newton {};
 
-/// Matrix-free conjugate gradients in scalar type S, with bounded work per step. For Tet4 and Corotational<...>. See
+/// Matrix-free conjugate gradients in scalar type S, with bounded work per step. For Tet4 and Corotational. See
 /// CorotatedMotion. `Preconditioner` is BlockJacobi or another StepPreconditioner.
 template <class Preconditioner, class S = float>
 struct MatrixFreeCG {};
 
-/// Parameters of a model on Implicit<Newton<...>>.
+/// Parameters of a model on Implicit<Newton>.
 struct ImplicitParameters {
   double step = 0.01;  ///< [s]
   bool settle = true;  ///< start in equilibrium under the scene's loads
@@ -81,7 +77,7 @@ struct ImplicitParameters {
 };
 
 template <>
-struct SolverTraits<Implicit<Newton<SparseCholesky>>> {
+struct SolverTraits<Implicit<Newton>> {
   using Parameters = ImplicitParameters;
 
   template <class Body>
@@ -113,11 +109,11 @@ struct CorotatedParameters {
 namespace detail {
 
 /// TissueMotion on a CorotatedMotion.
-template <class Base, class S, class Preconditioner>
+template <class S, class Preconditioner>
 class CorotatedTissueMotion final : public TissueMotion {
  public:
-  using Motion = CorotatedMotion<Base, S, Preconditioner>;
-  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+  using Motion = CorotatedMotion<S, Preconditioner>;
+  CorotatedTissueMotion(const HyperelasticBody<Tet4, Corotational>& body, const Scene& scene,
                         const CorotatedMotionOptions& options, const SetupLimits& limits)
       : motion_(body, scene, options, limits) {}
 
@@ -152,12 +148,11 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
   template <class Body>
   static PreparedMotion make_motion(const Body&, const Scene&, const Parameters&, const SetupLimits&) {
     static_assert(sizeof(Body) == 0,
-                  "palpate: MatrixFreeCG moves Tet4 with Corotational<...>; for others take "
-                  "Implicit<Newton<SparseCholesky>>");
+                  "palpate: MatrixFreeCG moves Tet4 with Corotational; for others take "
+                  "Implicit<Newton>");
     return {};
   }
-  template <class Base>
-  static PreparedMotion make_motion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+  static PreparedMotion make_motion(const HyperelasticBody<Tet4, Corotational>& body, const Scene& scene,
                                     const Parameters& p, const SetupLimits& limits) {
     PreparedMotion made;
     made.large_strain = true;
@@ -169,15 +164,13 @@ struct SolverTraits<Implicit<MatrixFreeCG<Preconditioner, S>>> {
     const detail::CorotatedMotionOptions options{
         p.scheme, p.mass_damping,          p.stiffness_damping, p.solve, p.precondition_every,
         p.check,  p.maximum_linearisations};
-    made.motion =
-        std::make_unique<detail::CorotatedTissueMotion<Base, S, Preconditioner>>(body, scene, options, limits);
+    made.motion = std::make_unique<detail::CorotatedTissueMotion<S, Preconditioner>>(body, scene, options, limits);
     return made;
   }
 };
 
-inline PreparedMotion SolverTraits<Implicit<Newton<SparseCholesky>>>::prepare(DeformableBody body, bool is_linear,
-                                                                              const Parameters& p,
-                                                                              const SetupLimits& limits) {
+inline PreparedMotion SolverTraits<Implicit<Newton>>::prepare(DeformableBody body, bool is_linear, const Parameters& p,
+                                                              const SetupLimits& limits) {
   PreparedMotion made;
   made.accepts_initial_strains = is_linear;
   made.large_strain = !is_linear;

@@ -16,7 +16,7 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Dynamics with implicit steps: Implicit<Newton<SparseCholesky>>, Implicit<MatrixFreeCG<...>>
+/// Dynamics with implicit steps: Implicit<Newton>, Implicit<MatrixFreeCG<...>>
 /// (model/moving/implicit.hpp), Implicit<QuasiNewton<>> (model/moving/quasi_newton.hpp).
 template <class StepSolver>
 struct Implicit {};
@@ -54,31 +54,20 @@ inline void require_step(double step) {
 
 }  // namespace detail
 
-/// Moving tissue with a solver that integrates in time; see MovingTissue. Initial strains are supported for linear
-/// materials only. Set-up solves once per touchable dof.
-template <class E, class M, MotionPolicy Solver>
-class HapticFEModel<E, M, Solver> : public MovingTissue {
+/// Moving tissue of element `E`, material `M` and a solver with SolverTraits::make_motion; see MovingTissue. Base of
+/// HapticFEModel on such a solver. Initial strains are supported for linear materials only. Set-up solves once per
+/// touchable dof.
+template <class E, class M, class Solver>
+class MotionTissue : public MovingTissue {
  public:
-  static_assert(Element<E>, "palpate: the first argument of HapticFEModel is an element, for example Tet10");
-  static_assert(detail::has_triangulated_faces<E>(),
-                "palpate: tools touch triangles; give the element's Face a list `triangles` of its nodes, like Tri6");
-  static_assert(Material<M>, "palpate: the second argument of HapticFEModel is a material, for example NeoHookean");
-  using ElementType = E;
-  using Traits = SolverTraits<Solver>;
-  using MaterialType = M;
-  using Parameters = typename Traits::Parameters;
+  using Parameters = typename SolverTraits<Solver>::Parameters;
 
-  /// One material everywhere. Throws the errors of admission, assembly and the motion, bad_argument for a step that is
-  /// not positive, not_converged when no initial equilibrium is found, unsupported for a cache file.
+ protected:
+  /// Throws the errors of admission, assembly and the motion, bad_argument for a step that is not positive,
+  /// not_converged when no initial equilibrium is found, unsupported for a cache file.
   template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
-                const Parameters& parameters = {})
-      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
-
-  /// One material per region.
-  template <MeshOf<E> Given>
-  HapticFEModel(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                const SetupOptions& options = {}, const Parameters& parameters = {})
+  MotionTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options,
+               const Parameters& parameters)
       : MovingTissue(options) {
     detail::require_step(parameters.step);
     detail::AdmittedMesh<E> admitted = detail::admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
@@ -96,18 +85,18 @@ class HapticFEModel<E, M, Solver> : public MovingTissue {
     if constexpr (requires { parameters.settle; }) must_hold = parameters.settle;
     if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
     if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
-    PreparedMotion prepared = Traits::make_motion(std::move(body), this->scene(), parameters, limits());
-    set_up(touchable, std::move(prepared), parameters.step, detail::block_pattern(this->mesh()));
-  }
-
-  /// The admitted mesh, in the frame of `origin()`.
-  const Mesh<E>& mesh() const noexcept { return body().mesh; }
-  /// The mesh with its materials linearised at small strain (assembly/body.hpp).
-  const Body<E>& body() const noexcept { return detail::element_body<E>(elastic_body()).body(); }
-  /// The boundary faces: faces of the mesh that belong to one element only.
-  const std::vector<BoundaryFace>& boundary() const noexcept {
-    return detail::element_body<E>(elastic_body()).boundary();
+    PreparedMotion prepared = SolverTraits<Solver>::make_motion(std::move(body), this->scene(), parameters, limits());
+    set_up(touchable, std::move(prepared), parameters.step, detail::block_pattern(detail::mesh_of<E>(elastic_body())));
   }
 };
+
+namespace detail {
+
+template <class E, class M, MotionPolicy Solver>
+struct TissueOf<E, M, Solver> : ModelArguments<E, M> {
+  using Type = MotionTissue<E, M, Solver>;
+};
+
+}  // namespace detail
 
 }}  // namespace palpate

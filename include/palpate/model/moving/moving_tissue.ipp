@@ -223,9 +223,7 @@ PALPATE_INLINE void MovingTissue::set_conditions(const Scene& scene) {
   const ScopedIdTranslation translation(original_ids());
   Scene mapped = this->mapped(scene, triangles_);
   const EssentialConditions changed = elastic_body().conditions(mapped);
-  if (changed.constrained != elastic_body().conditions(this->scene()).constrained)
-    raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
-          "Values may change, the set of prescribed components may not: make a new model");
+  changed.require_components(elastic_body().conditions(this->scene()));
   VectorX applied = load_of(mapped, Vector3::Zero());
   VectorX load = load_of(mapped, local(scene.gravity(), pose()));
   std::string others = mapped.loads_in_words();

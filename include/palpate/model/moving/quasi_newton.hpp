@@ -43,7 +43,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
   static PreparedMotion make_motion(const Body&, const Scene&, const Parameters&, const SetupLimits&) {
     static_assert(sizeof(Body) == 0,
                   "palpate: QuasiNewton moves hyperelastic materials, for example NeoHookean; for linear ones take "
-                  "Implicit<Newton<SparseCholesky>>");
+                  "Implicit<Newton>");
     return {};
   }
   template <Element E, LargeStrainMaterial M>

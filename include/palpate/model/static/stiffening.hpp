@@ -192,33 +192,20 @@ struct StiffeningParameters {
   StiffeningCurve radial{};  ///< across it
 };
 
-/// Linear static tissue that stiffens: the forces of a tick are those of QuasiNonLinear over the model on `Inner`.
-/// Functions without tools (loads, report, energies) are those of the linear model. Neither copyable nor movable.
+/// Linear static tissue that stiffens: the forces of a tick are those of QuasiNonLinear over the tissue on `Inner`.
+/// Functions without tools (loads, report, energies) are those of the linear tissue. Neither copyable nor movable. Base
+/// of HapticFEModel on Stiffening<Inner>.
 template <class E, class M, class Inner>
-class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner> {
+class StiffeningTissue : public StaticTissue<E, M, Inner> {
   static_assert(SolverPolicy<Inner>,
                 "palpate: Stiffening scales a static solver, for example Stiffening<Condensed<SelectiveInverse>>");
-  using Linear = HapticFEModel<E, M, Inner>;
+  using Linear = StaticTissue<E, M, Inner>;
 
  public:
-  using MaterialType = M;
   using Parameters = StiffeningParameters;
 
-  /// One material everywhere. Throws as the model on Inner.
-  template <MeshOf<E> Mesh>
-  HapticFEModel(const Mesh& mesh, const Scene& scene, const M& material, const SetupOptions& options = {},
-                const Parameters& parameters = {})
-      : HapticFEModel(mesh, scene, RegionMaterials<M>{{everywhere, material}}, options, parameters) {}
-  /// One material per region.
-  template <MeshOf<E> Mesh>
-  HapticFEModel(const Mesh& mesh, const Scene& scene, const RegionMaterials<M>& materials,
-                const SetupOptions& options = {}, const Parameters& parameters = {})
-      : Linear(mesh, scene, materials, options), stiffened_(*this, parameters.axial, parameters.radial) {
-    scales_.fill(stiffened_.scale());
-    scaled_.reserve(3 * largest_default_capacity);
-  }
-  HapticFEModel(const HapticFEModel&) = delete;
-  HapticFEModel& operator=(const HapticFEModel&) = delete;
+  StiffeningTissue(const StiffeningTissue&) = delete;
+  StiffeningTissue& operator=(const StiffeningTissue&) = delete;
 
   /// As in the linear model, with the compliance of the newest tick. For one drawing thread. Allocates when there are
   /// more forces than in any earlier call.
@@ -258,6 +245,15 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   double compliance_bound(int j) const noexcept { return stiffened_.compliance_bound(j); }
   double compliance_floor() const noexcept { return stiffened_.compliance_floor(); }
 
+ protected:
+  template <MeshOf<E> Given>
+  StiffeningTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                   const SetupOptions& options, const Parameters& parameters)
+      : Linear(mesh, scene, materials, options), stiffened_(*this, parameters.axial, parameters.radial) {
+    scales_.fill(stiffened_.scale());
+    scaled_.reserve(3 * largest_default_capacity);
+  }
+
  private:
   void note_scale() noexcept {
     scales_.back() = stiffened_.scale();
@@ -267,6 +263,12 @@ class HapticFEModel<E, M, Stiffening<Inner>> : public HapticFEModel<E, M, Inner>
   QuasiNonLinear<Linear> stiffened_;
   TripleBuffer<Matrix3> scales_;
   std::vector<VertexForce> scaled_;
+};
+
+template <class Inner>
+struct SolverTraits<Stiffening<Inner>> {
+  template <class E, class M>
+  using Tissue = StiffeningTissue<E, M, Inner>;
 };
 
 }}  // namespace palpate

@@ -71,10 +71,10 @@ inline CorotatedMotionOptions valid(const CorotatedMotionOptions& o) {
 /// next step includes. The check prevents implicit Euler from adding energy: the potential of the step must not be
 /// higher at its end than at its initial state, otherwise the step is linearised again. Vectors have 3 entries per
 /// node; mass is lumped. Neither copyable nor movable.
-template <class Base = LinearElastic, class S = float, class Preconditioner = BlockJacobi>
+template <class S = float, class Preconditioner = BlockJacobi>
 class CorotatedMotion {
  public:
-  using Tetrahedra = CorotatedTetrahedra<Base, S>;
+  using Tetrahedra = CorotatedTetrahedra<S>;
   /// Largest tolerable error of an increment in the energy norm. Above it a step counts as not converged, and a
   /// correction is not applied.
   static constexpr double tolerable_error = 0.05;
@@ -82,7 +82,7 @@ class CorotatedMotion {
 
   /// Starts at rest with zero displacement. Throws the errors of Tetrahedra and conditions, unsupported for initial
   /// strains, bad_density when a free node has no mass, bad_argument for options out of range.
-  CorotatedMotion(const HyperelasticBody<Tet4, Corotational<Base>>& body, const Scene& scene,
+  CorotatedMotion(const HyperelasticBody<Tet4, Corotational>& body, const Scene& scene,
                   const CorotatedMotionOptions& options = {}, const SetupLimits& limits = {})
       : options_(valid(options)),
         tetrahedra_(body, limits),

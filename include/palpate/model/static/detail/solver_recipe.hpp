@@ -57,7 +57,7 @@ inline constexpr bool is_iterative<WithAssembly<ConjugateGradient, Assembly>> = 
 /// The stiffness of a body whose element type is known here only.
 template <Element E, class Assembly>
 AnyStiffness make_stiffness(const ElasticBody& body, const SetupLimits& limits) {
-  return AnyStiffness(Assembly::make(element_body<E>(body).body(), limits));
+  return AnyStiffness(Assembly::make(body_of<E>(body), limits));
 }
 
 /// The recipe of a policy.

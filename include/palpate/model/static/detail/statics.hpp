@@ -116,9 +116,7 @@ inline Statics::Statics(ElasticBody& body, const Scene& scene, const std::vector
 inline void Statics::set_conditions(const Scene& scene, const Vector3& gravity, const Look& look,
                                     const SetupThreads& threads) {
   EssentialConditions conditions = body_->conditions(scene);
-  if (conditions.constrained != conditions_.constrained)
-    raise(SetupErrorKind::unsupported, "the new scene prescribes other components than the one the model was made for",
-          "Values may change, the set of prescribed components may not: make a new model");
+  conditions.require_components(conditions_);
   std::vector<Vector6> strains = body_->initial_strains(scene);
   VectorX strain_load = body_->initial_strain_load(strains);
   VectorX applied = body_->applied_load(scene);
