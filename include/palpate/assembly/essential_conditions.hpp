@@ -34,6 +34,13 @@ struct EssentialConditions {
             "Values may change, the set of prescribed components may not: make a new model");
   }
 
+  /// Whether a prescribed dof of `full` differs from its value in `values`.
+  bool supports_move(const VectorX& full, const VectorX& values) const noexcept {
+    for (Index dof = 0; dof < dof_count(); ++dof)
+      if (is_constrained(dof) && full[dof] != values[dof]) return true;
+    return false;
+  }
+
   /// Copies the entries of the free dofs from a full vector. No allocation when `free_part` has its size.
   void gather(const VectorX& full, VectorX& free_part) const noexcept {
     for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];

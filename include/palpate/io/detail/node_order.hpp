@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
+#include <palpate/core/small_matrix.hpp>
 #include <palpate/io/detail/cell_shape.hpp>
 #include <palpate/io/detail/message.hpp>
 
@@ -70,49 +71,33 @@ std::array<int, static_cast<std::size_t>(E::nodes)> vtk_order() {
 
 namespace detail {
 
-using Point = std::array<double, 3>;
-
-inline Point difference(const double* a, const double* b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-inline Point cross_product(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-inline double dot_product(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// Position of VTK's corner k on the domain of nodes_on_unit_domain.
-inline Point vtk_corner(bool is_tetrahedron, int k) {
+inline Vector3 vtk_corner(bool is_tetrahedron, int k) {
   if (is_tetrahedron) return {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0, k == 3 ? 1.0 : 0.0};
   const auto& x = hexahedron_corners[static_cast<std::size_t>(k)];
   return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
 }
 
 /// The same for any node.
-PALPATE_COLD inline Point vtk_node(bool is_tetrahedron, int k) {
+PALPATE_COLD inline Vector3 vtk_node(bool is_tetrahedron, int k) {
   const int corners = is_tetrahedron ? 4 : 8;
   if (k < corners) return vtk_corner(is_tetrahedron, k);
   const auto& ends = is_tetrahedron ? tetrahedron_edges[static_cast<std::size_t>(k - 4)]
                                     : hexahedron_edges[static_cast<std::size_t>(k - 8)];
-  const Point a = vtk_corner(is_tetrahedron, ends[0]), b = vtk_corner(is_tetrahedron, ends[1]);
-  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+  return 0.5 * (vtk_corner(is_tetrahedron, ends[0]) + vtk_corner(is_tetrahedron, ends[1]));
 }
 
 /// Solves for the weights of the edges from the first node to the next three.
 inline void to_unit_tetrahedron(double* xyz, int nodes) {
-  const Point origin{xyz[0], xyz[1], xyz[2]};
-  const Point a = difference(xyz + 3, xyz), b = difference(xyz + 6, xyz), c = difference(xyz + 9, xyz);
-  const Point bc = cross_product(b, c), ca = cross_product(c, a), ab = cross_product(a, b);
-  const double volume = dot_product(a, bc);
-  for (int i = 0; i < nodes; ++i) {
-    double* x = xyz + 3 * i;
-    const Point d = difference(x, origin.data());
-    x[0] = dot_product(d, bc) / volume;
-    x[1] = dot_product(d, ca) / volume;
-    x[2] = dot_product(d, ab) / volume;
+  const Vector3 origin(xyz);
+  const Vector3 a = Vector3(xyz + 3) - origin, b = Vector3(xyz + 6) - origin, c = Vector3(xyz + 9) - origin;
+  const Vector3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+  const double volume = a.dot(bc);
+  for (double* x = xyz; x != xyz + 3 * nodes; x += 3) {
+    const Vector3 d = Vector3(x) - origin;
+    x[0] = d.dot(bc) / volume;
+    x[1] = d.dot(ca) / volume;
+    x[2] = d.dot(ab) / volume;
   }
 }
 
@@ -143,9 +128,7 @@ PALPATE_COLD inline std::vector<int> element_order(const palpate::detail::Elemen
   std::vector<int> order(static_cast<std::size_t>(element.nodes));
   for (int a = 0; a < element.nodes; ++a) {
     const auto is_at = [&](int k) {
-      const detail::Point d =
-          detail::difference(detail::vtk_node(element.face_count == 4, k).data(), xyz.data() + 3 * a);
-      return detail::dot_product(d, d) <= 1e-12;
+      return (detail::vtk_node(element.face_count == 4, k) - Vector3(xyz.data() + 3 * a)).squaredNorm() <= 1e-12;
     };
     int k = 0;
     while (k < element.nodes && !is_at(k)) ++k;

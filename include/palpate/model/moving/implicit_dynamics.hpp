@@ -120,7 +120,6 @@ class ImplicitDynamics {
   /// Sets x_ to the state that the tangent predicts when supports move, unless its potential is higher. Moved alone,
   /// they compress only the elements next to them. Costs a factorisation.
   void predict() noexcept;
-  bool supports_move() const noexcept;
   /// Sets a state that has lasted for `seconds`; infinite: fully relaxed.
   void set_state(const VectorX& u, const VectorX& v, double seconds);
 

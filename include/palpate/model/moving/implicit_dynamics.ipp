@@ -55,7 +55,7 @@ PALPATE_INLINE StepReport ImplicitDynamics::step(double h) noexcept {
   work_before_ = work_;
   if (damping_.size() > 0) body_.elastic->tangent(u_, damping_);
   start_from_the_lower();
-  if (supports_move()) predict();
+  if (body_.conditions.supports_move(u_, prescribed_)) predict();
   if (!move_supports()) return report;
   springs_changed_ = false;
   report.newton = newton_.solve(*this, x_);
@@ -229,12 +229,6 @@ PALPATE_INLINE void ImplicitDynamics::start_from_the_lower() noexcept {
   body_.conditions.gather(u_, start_);
   const double coasted = evaluate(x_, residual_);
   if (!(coasted <= evaluate(start_, residual_))) x_ = start_;
-}
-
-PALPATE_INLINE bool ImplicitDynamics::supports_move() const noexcept {
-  for (Index dof = 0; dof < u_.size(); ++dof)
-    if (body_.conditions.is_constrained(dof) && u_[dof] != prescribed_[dof]) return true;
-  return false;
 }
 
 PALPATE_INLINE void ImplicitDynamics::predict() noexcept {

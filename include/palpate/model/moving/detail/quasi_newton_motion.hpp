@@ -114,7 +114,6 @@ class QuasiNewtonMotion final : public TissueMotion {
   /// Starts the method at the state that is predicted by linear elasticity when supports move, unless its potential is
   /// higher than `least`. Moved alone, they compress only the elements next to them.
   void predict(double least) noexcept;
-  bool supports_move() const noexcept;
   /// As in ImplicitDynamics: moves supports in parts where the body must follow each part. Ends at x_.
   bool move_supports() noexcept;
   static constexpr int most_support_parts = 64;

@@ -124,7 +124,7 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
     body_.conditions.gather(step_.predicted(), x_);
     if (!(method_.start(*this, x_) <= still)) start_at_state();
   }
-  if (supports_move()) predict(method_.potential());
+  if (body_.conditions.supports_move(u_, prescribed_)) predict(method_.potential());
   if (!move_supports()) return done;
   const bool shorten = std::exchange(shorten_, false);
   const int most = shorten ? std::min(parameters_.maximum_iterations, most_shortened) : parameters_.maximum_iterations;
@@ -149,12 +149,6 @@ PALPATE_INLINE MotionStep QuasiNewtonMotion::step(double h) noexcept {
   if (deformation_.beyond_range > 0) done.status.set(StatusFlag::material_exceeded);
   if (!(report_.relative_residual <= tolerable_residual)) done.status.set(StatusFlag::solver_not_converged);
   return done;
-}
-
-PALPATE_INLINE bool QuasiNewtonMotion::supports_move() const noexcept {
-  for (Index dof = 0; dof < u_.size(); ++dof)
-    if (body_.conditions.is_constrained(dof) && u_[dof] != prescribed_[dof]) return true;
-  return false;
 }
 
 PALPATE_INLINE void QuasiNewtonMotion::predict(double least) noexcept {
