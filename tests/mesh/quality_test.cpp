@@ -118,7 +118,7 @@ TEST_CASE("other elements are rated by their least Jacobian", "[mesh][quality]")
 
 TEST_CASE("every symmetric element can be reversed", "[mesh][repair]") {
   const auto check = []<class E>(E) {
-    const auto order = detail::mirrored_order<E>();
+    const auto order = detail::mirrored_order(detail::element_layout<E>);
     REQUIRE(order.has_value());
     const ElementNodes<E> x = E::reference_nodes();
     ElementNodes<E> y;

@@ -118,7 +118,6 @@ class ContactSurface {
   bool has_large_strain() const noexcept { return large_strain_; }
   /// Sets the errors that were measured on this surface; null: none were.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
-  const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
   /// Sets what is known about the other errors of a linear model.
   void set_model_error(detail::LinearModelError error) noexcept { model_error_ = std::move(error); }
   /// Sets both for a surface that joins those of several bodies, whose vertices follow each other. Allocates when there

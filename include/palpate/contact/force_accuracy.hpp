@@ -56,10 +56,6 @@ class ForceAccuracy {
   ForceAccuracy(double radius, std::vector<detail::MissingDepth> places, std::vector<Vertex> vertices)
       : radius_(radius), places_(std::move(places)), vertices_(std::move(vertices)) {}
 
-  /// Radius of the sphere of the measurement [m].
-  double radius() const noexcept { return radius_; }
-  std::span<const detail::MissingDepth> places() const noexcept { return places_; }
-
   /// Error of the force [N] on a sphere of about that radius that presses these contacts, indentation `depth` [m]
   /// without coupling. For a sphere of a radius more than a quarter larger or smaller nothing is known. No allocation;
   /// O(contacts), about 0.1 us.

@@ -37,8 +37,6 @@ class SpscRing {
   /// Of the popping thread.
   bool empty() const noexcept { return head_.load(std::memory_order_relaxed) == tail_.load(std::memory_order_acquire); }
 
-  static constexpr std::size_t capacity() noexcept { return Capacity; }
-
  private:
   std::array<T, Capacity> items_{};
   alignas(64) std::atomic<std::size_t> head_{0};

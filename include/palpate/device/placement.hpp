@@ -77,8 +77,6 @@ class PlacedDevice {
   bool restarts() const noexcept requires requires(const Device& d) { d.restarts(); }
   { return std::as_const(*device_).restarts(); }
 
-  const Placement& placement() const noexcept { return placement_; }
-
  private:
   Device* device_;
   Placement placement_;

@@ -151,7 +151,6 @@ class ReplayDevice {
   std::span<const RecordedTick> recorded() const noexcept { return ticks_; }
   const Vector3& last_force() const noexcept { return rendered_.force(); }    ///< [N] rendered now
   const Vector3& last_torque() const noexcept { return rendered_.torque(); }  ///< [N m] the same
-  double peak_force() const noexcept { return rendered_.peak(); }             ///< [N] largest force rendered so far
 
  private:
   std::vector<RecordedTick> ticks_;

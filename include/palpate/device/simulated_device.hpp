@@ -138,8 +138,6 @@ class SimulatedDevice {
   const Vector3& last_force() const noexcept { return rendered_.force(); }  ///< [N] last written, limited
   const Vector3& motor_force() const noexcept { return acting_; }           ///< [N] acting now, after the delay
   double time() const noexcept { return now_; }                             ///< [s] of the last sample
-  std::uint64_t reads() const noexcept { return reads_; }
-  const SimulatedOptions& options() const noexcept { return options_; }
 
  private:
   struct Pending {
@@ -168,7 +166,7 @@ class SimulatedDevice {
   Vector3 acting_ = Vector3::Zero();
   double now_ = 0.0, next_stall_ = infinity;
   std::int64_t slot_ = 0;
-  std::uint64_t random_, reads_ = 0;
+  std::uint64_t random_;
   bool unplugged_ = false;
 };
 

@@ -137,7 +137,6 @@ PALPATE_INLINE ToolState SimulatedDevice::read() noexcept {
   state.valid = !unplugged_;
   rendered_.read_was(state.valid);
   if (!state.valid) silence();
-  ++reads_;
   return state;
 }
 

@@ -74,16 +74,6 @@ void renumber_nodes(Mesh<E>& mesh, const std::vector<NodeId>& map) {
   renumber_nodes(edit, map);
 }
 template <Element E>
-void renumber_elements(Mesh<E>& mesh, const std::vector<Index>& map) {
-  MeshEdit edit = mesh_edit(mesh);
-  renumber_elements(edit, map);
-  mesh.elements.resize(static_cast<std::size_t>(edit.element_count));
-}
-template <Element E>
-std::optional<std::vector<int>> mirrored_order() {
-  return mirrored_order(element_layout<E>);
-}
-template <Element E>
 void reorient(Mesh<E>& mesh, const std::vector<Index>& elements) {
   MeshEdit edit = mesh_edit(mesh);
   reorient(edit, elements);

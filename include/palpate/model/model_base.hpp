@@ -95,7 +95,6 @@ class ModelBase {
   /// The body given to `admit`.
   const ElasticBody& elastic_body() const noexcept { return *body_; }
   ElasticBody& elastic_body() noexcept { return *body_; }
-  const OriginalIds& original_ids() const noexcept { return original_ids_; }
   OriginalIds& original_ids() noexcept { return original_ids_; }
 
   /// Takes over an admitted body and resolves its touchable and rendered parts. Reports values that look like other

@@ -15,9 +15,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 struct Principal {
   Vector3 values = Vector3::Zero();          ///< descending; unit of the tensor
   Matrix3 directions = Matrix3::Identity();  ///< unit vectors, one per column in order of the values, right-handed
-
-  /// Largest shear: half of the difference between the largest and the smallest value (Tresca).
-  double largest_shear() const noexcept { return 0.5 * values[0] - 0.5 * values[2]; }
 };
 
 /// Principal values and directions of a symmetric tensor (the lower half is read): directions are orthogonal to

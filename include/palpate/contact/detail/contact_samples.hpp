@@ -72,9 +72,6 @@ class ContactSamples {
   std::vector<int> first_;  // per triangle, one past the end last
 };
 
-/// Length of the longest edge of a surface [m].
-double longest_edge(const ContactSurface& surface) noexcept;
-
 /// Throws SetupError(bad_argument) when the longest edge is longer than a lattice with a spacing of one radius can
 /// cover (ids: its vertices). The message states whether the edge is that long only because the scene's loads stretch
 /// it.

@@ -365,14 +365,6 @@ PALPATE_INLINE int ContactSamples::of_vertex(const ContactSurface& surface, int 
   return -1;
 }
 
-PALPATE_INLINE double longest_edge(const ContactSurface& surface) noexcept {
-  double longest = 0.0;
-  for (const Triangle& t : surface.triangles())
-    for (std::size_t i = 0; i < 3; ++i)
-      longest = std::max(longest, (surface.position(t[i]) - surface.position(t[(i + 1) % 3])).norm());
-  return longest;
-}
-
 PALPATE_INLINE void require_dense_points(const ContactSurface& surface, double radius) {
   const double most = ContactSamples::maximum_subdivision * radius;
   SetupProblem problem;

@@ -167,7 +167,6 @@ class CorotatedMotion {
   double time() const noexcept { return time_; }
   const VectorX& displacement() const noexcept { return u_; }
   const VectorX& velocity() const noexcept { return v_; }
-  const VectorX& acceleration() const noexcept { return a_; }
   const DeformableBody& body() const noexcept { return body_; }
   const Preconditioner& preconditioner() const noexcept { return preconditioner_; }
   /// Resistance of the body in its current state [N], including inertia and damping: on constrained dofs the sum of

@@ -169,7 +169,6 @@ class PartlyLinearMotion final : public TissueMotion {
   void complete(VectorX& u) noexcept override;
 
   const TissueMotion& near() const noexcept { return *near_; }
-  const BodyParts& parts() const noexcept { return parts_; }
 
  private:
   /// Takes over the displacement of the near part, and of the far part with the interface fixed where it has changed.

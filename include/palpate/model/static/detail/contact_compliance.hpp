@@ -25,7 +25,6 @@ class ComplianceColumns {
   ComplianceColumns(std::vector<Index> kept_index, int slots, const SetupLimits& limits);
 
   std::size_t bytes() const noexcept { return values_.size() * sizeof(Scalar); }
-  int slots() const noexcept { return static_cast<int>(bound_.size()); }
   int vertices() const noexcept { return static_cast<int>(kept_index_.size() / 3); }
 
   /// Displacement of a vertex per force on the vertex in a slot, 3 x 3, columns first [m/N].
