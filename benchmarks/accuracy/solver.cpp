@@ -4,6 +4,8 @@
 #include <palpate/assembly/free_stiffness.hpp>
 #include <palpate/linear/sparse_cholesky.hpp>
 
+#include <chrono>
+
 namespace accuracy {
 
 VectorX solve_free(const BlockMatrix& k, const EssentialConditions& conditions, const std::vector<Vector3>& positions,

@@ -6,6 +6,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <thread>

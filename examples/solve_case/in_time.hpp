@@ -7,6 +7,7 @@
 
 #include "solve.hpp"
 
+#include <chrono>
 #include <numbers>
 #include <sstream>
 

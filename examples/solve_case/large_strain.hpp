@@ -7,6 +7,8 @@
 #include <palpate/material/st_venant_kirchhoff.hpp>
 #include <palpate/model/moving/equilibrium.hpp>
 
+#include <chrono>
+
 #include "solve.hpp"
 
 namespace solve_case {

@@ -3,6 +3,8 @@
 
 #include <palpate/model/static/natural_frequencies.hpp>
 
+#include <chrono>
+
 #include "solve.hpp"
 
 namespace solve_case {

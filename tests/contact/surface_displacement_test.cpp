@@ -1,4 +1,6 @@
 // Displacement of the surface under loads on points, and that of pads which tools grasp.
+#include <palpate/contact/detail/surface_displacement.hpp>
+
 #include "contact/servo_session.hpp"
 
 #include "catch.hpp"

@@ -5,6 +5,8 @@
 #include <palpate/mesh/generators_box.hpp>
 #include <palpate/testing/random.hpp>
 
+#include <thread>
+
 #include "catch.hpp"
 
 using namespace palpate;

@@ -8,6 +8,9 @@
 #include <palpate/testing/random.hpp>
 #include <palpate/testing/tissue_laws.hpp>
 
+#include <chrono>
+#include <thread>
+
 #include "model/one_session.hpp"
 
 using namespace palpate;

@@ -6,6 +6,8 @@
 #include <palpate/testing/device_laws.hpp>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "catch.hpp"
 

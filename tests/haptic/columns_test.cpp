@@ -5,6 +5,7 @@
 
 #include "catch.hpp"
 
+#include <chrono>
 #include <numeric>
 #include <thread>
 

@@ -2,6 +2,7 @@
 #include "contact/servo_session.hpp"
 
 #include <palpate/element/wrappers.hpp>
+#include <palpate/haptic/detail/tool_input.hpp>
 
 #include <algorithm>
 #include <array>

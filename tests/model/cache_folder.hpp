@@ -2,6 +2,7 @@
 
 #include <palpate/model/cache/detail/prepared_cache.hpp>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 

@@ -5,6 +5,7 @@
 #include <palpate/testing/allocation_counter.hpp>
 
 #include <chrono>
+#include <thread>
 
 #include "catch.hpp"
 

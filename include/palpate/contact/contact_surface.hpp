@@ -31,17 +31,7 @@ class ExpectedSurface {
   /// Sets positions and forces. `resting`: of the same triangles. Allocates at the first call and when there are more
   /// vertices than before. O(vertices + triangles).
   void set(const detail::Bvh& resting, std::span<const Triangle> triangles, std::span<const Vector3> positions,
-           std::span<const VertexForce> forces) {
-    if (positions_.size() != positions.size()) {
-      positions_.resize(positions.size());
-      loaded_.resize(positions.size());
-      bvh_ = resting;
-    }
-    std::copy(positions.begin(), positions.end(), positions_.begin());
-    bvh_.refit(triangles, positions_);
-    count_ = std::min(forces.size(), loaded_.size());
-    for (std::size_t k = 0; k < count_; ++k) loaded_[k] = forces[k].vertex;
-  }
+           std::span<const VertexForce> forces);
 
  private:
   std::vector<Vector3> positions_;
@@ -233,19 +223,7 @@ struct CoarseFacetReport {
 namespace detail {
 
 /// Checks every triangle once. Allocates; for set-up.
-inline CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius) {
-  constexpr double coarse = 0.6;  // radius per length from which facets show the dent
-  CoarseFacetReport report;
-  report.radius = radius;
-  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
-    const double length = surface.facet_length(t);
-    report.longest = std::max(report.longest, length);
-    if (!(radius < coarse * length)) continue;
-    report.triangles.push_back(t);
-    report.unknown_materials += surface.material(t).modulus == 0.0;
-  }
-  return report;
-}
+CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius);
 
 }  // namespace detail
 

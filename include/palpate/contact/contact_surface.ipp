@@ -10,7 +10,34 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE void ExpectedSurface::set(const detail::Bvh& resting, std::span<const Triangle> triangles,
+                                         std::span<const Vector3> positions, std::span<const VertexForce> forces) {
+  if (positions_.size() != positions.size()) {
+    positions_.resize(positions.size());
+    loaded_.resize(positions.size());
+    bvh_ = resting;
+  }
+  std::copy(positions.begin(), positions.end(), positions_.begin());
+  bvh_.refit(triangles, positions_);
+  count_ = std::min(forces.size(), loaded_.size());
+  for (std::size_t k = 0; k < count_; ++k) loaded_[k] = forces[k].vertex;
+}
+
 namespace detail {
+
+PALPATE_INLINE CoarseFacetReport report_coarse_facets(const ContactSurface& surface, double radius) {
+  constexpr double coarse = 0.6;  // radius per length from which facets show the dent
+  CoarseFacetReport report;
+  report.radius = radius;
+  for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t) {
+    const double length = surface.facet_length(t);
+    report.longest = std::max(report.longest, length);
+    if (!(radius < coarse * length)) continue;
+    report.triangles.push_back(t);
+    report.unknown_materials += surface.material(t).modulus == 0.0;
+  }
+  return report;
+}
 
 /// Whether a point at `offset` from its closest point on the surface, which is on the edge between vertices a and b, is
 /// outside. The triangles at the edge divide its surroundings into wedges; the triangles on both sides of the point's

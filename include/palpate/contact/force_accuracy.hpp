@@ -53,8 +53,7 @@ class ForceAccuracy {
     double softness = 1.0;      ///< modulus at the place, relative to that at the vertex
   };
 
-  ForceAccuracy(double radius, std::vector<detail::MissingDepth> places, std::vector<Vertex> vertices)
-      : radius_(radius), places_(std::move(places)), vertices_(std::move(vertices)) {}
+  ForceAccuracy(double radius, std::vector<detail::MissingDepth> places, std::vector<Vertex> vertices);
 
   /// Error of the force [N] on a sphere of about that radius that presses these contacts, indentation `depth` [m]
   /// without coupling. For a sphere of a radius more than a quarter larger or smaller nothing is known. No allocation;

@@ -8,6 +8,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE ForceAccuracy::ForceAccuracy(double radius, std::vector<detail::MissingDepth> places,
+                                            std::vector<Vertex> vertices)
+    : radius_(radius), places_(std::move(places)), vertices_(std::move(vertices)) {}
+
 namespace detail {
 
 PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double force) const noexcept {

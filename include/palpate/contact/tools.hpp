@@ -20,11 +20,7 @@ struct SphereTool {
   double radius = 4e-3;  ///< [m]
 
   /// Throws bad_argument when the radius is not finite and positive.
-  void require_valid() const {
-    if (!(std::isfinite(radius) && radius > 0.0))
-      raise(SetupErrorKind::bad_argument, "the radius of a sphere tool is " + number(radius),
-            "It must be finite and positive, in metres");
-  }
+  void require_valid() const;
 };
 
 /// A rigid capsule: all points within `radius` of a segment of its axis, from `-half_length` to `half_length` about the
@@ -42,14 +38,7 @@ struct CapsuleTool {
 
   /// Throws bad_argument when the radius is not finite and positive, the axis has zero length, or the capsule is longer
   /// than 32 radii: more contact points than the capacity would be under it.
-  void require_valid() const {
-    SphereTool{radius}.require_valid();
-    if (!(half_length >= 0.0 && half_length <= 16.0 * radius))
-      raise(SetupErrorKind::bad_argument, "half the length of a capsule tool is " + number(half_length),
-            "Give 0 to 16 radii, in metres");
-    if (half_length > 0.0 && !(axis.norm() > 0.0 && std::isfinite(axis.norm())))
-      raise(SetupErrorKind::bad_argument, "the axis of a capsule tool has no direction");
-  }
+  void require_valid() const;
 };
 
 /// A rigid rounded convex polyhedron: all points within `radius` of the convex hull of points in the tool's own frame
@@ -88,14 +77,7 @@ struct BladeTool {
 
   /// Throws bad_argument for an edge of zero length, a cut spacing that is not positive, a toughness below zero, and
   /// values that are not finite.
-  void require_valid() const {
-    for (const double value : {edge.norm(), cut_spacing})
-      if (!(value > 0.0 && value < infinity))
-        raise(SetupErrorKind::bad_argument, "the edge or cut spacing of a blade is " + number(value),
-              "Give positive SI values");
-    if (!(toughness >= 0.0 && toughness < infinity))
-      raise(SetupErrorKind::bad_argument, "the toughness is " + number(toughness), "Give zero or more, in J/m^2");
-  }
+  void require_valid() const;
 };
 
 /// A tool of any kind. A blade needs a tissue that can be cut.
@@ -108,8 +90,8 @@ concept AnyTool = std::same_as<T, SphereTool> || std::same_as<T, CapsuleTool> ||
 /// Tools in the order of their states and forces: one tool, a list in braces of tools of any kinds, or a vector.
 class ToolList {
  public:
-  ToolList(const AnyTool auto& tool) { tools_.emplace_back(tool); }  // NOLINT(google-explicit-constructor)
-  ToolList(std::initializer_list<Tool> tools) : tools_(tools) {}
+  ToolList(const AnyTool auto& tool) { add(Tool(tool)); }  // NOLINT(google-explicit-constructor)
+  ToolList(std::initializer_list<Tool> tools);
   template <AnyTool T>
   ToolList(const std::vector<T>& tools)  // NOLINT(google-explicit-constructor)
       : tools_(tools.begin(), tools.end()) {}
@@ -120,6 +102,8 @@ class ToolList {
   auto end() const noexcept { return tools_.end(); }
 
  private:
+  void add(Tool tool);
+
   std::vector<Tool> tools_;
 };
 

@@ -6,9 +6,9 @@
 #include <palpate/device/trajectory.hpp>
 #include <palpate/device/render_limits.hpp>
 
-#include <chrono>
-#include <thread>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -41,6 +41,21 @@ struct MockOptions {
   std::vector<DeviceFault> faults{};
 };
 
+namespace detail {
+
+/// Of the steady clock [s].
+double steady_seconds() noexcept;
+/// This thread sleeps [s].
+void sleep_for(double seconds) noexcept;
+/// The rate [1/s] of a mock device. Throws bad_argument unless it is finite and positive.
+double checked_rate(double rate);
+/// Whether a fault affects a read.
+bool hits(const DeviceFault& fault, std::uint64_t read) noexcept;
+/// What a fault does to the state that is read.
+void corrupt(ToolState& state, const DeviceFault& fault) noexcept;
+
+}  // namespace detail
+
 /// A HapticDevice that follows `Path`: any callable Vector3(double t) that does not throw, kept by value. If it has
 /// velocity(t), states contain velocity; otherwise it is NaN (not given). Reads allocate nothing unless the path does.
 template <class Path = Trajectory>
@@ -48,16 +63,14 @@ class MockDevice {
  public:
   explicit MockDevice(Path path, MockOptions options = {})
       : path_(std::move(path)), options_(std::move(options)), rendered_(options_.limits) {
-    if (!(options_.rate > 0.0 && std::isfinite(options_.rate)))
-      raise(SetupErrorKind::bad_argument, "the rate of a mock device is " + number(options_.rate) + " Hz", "Give 1000");
-    options_.limits.rate = options_.rate;
+    options_.limits.rate = detail::checked_rate(options_.rate);
   }
 
   ToolState read() noexcept {
     const std::uint64_t n = reads_++;
     bool frozen = false;
     for (const DeviceFault& f : options_.faults) {
-      if (!hits(f, n)) continue;
+      if (!detail::hits(f, n)) continue;
       if (f.kind == DeviceFault::Kind::stall) stall(f.seconds);
       frozen |= f.kind == DeviceFault::Kind::frozen;
     }
@@ -65,7 +78,7 @@ class MockDevice {
     ToolState state = last_;
     state.now = now(n);
     for (const DeviceFault& f : options_.faults)
-      if (hits(f, n)) corrupt(state, f);
+      if (detail::hits(f, n)) detail::corrupt(state, f);
     if (unplugged_) state.valid = false;
     rendered_.read_was(state.valid);
     return state;
@@ -83,18 +96,15 @@ class MockDevice {
   std::uint64_t reads() const noexcept { return reads_; }
 
  private:
-  using Steady = std::chrono::steady_clock;
-
-  static bool hits(const DeviceFault& f, std::uint64_t n) noexcept { return n >= f.first && n - f.first < f.count; }
   double now(std::uint64_t n) const noexcept {
     if (options_.clock == DeviceClock::simulated) return static_cast<double>(n) / options_.rate + delay_;
-    return std::chrono::duration<double>(Steady::now() - origin_).count();
+    return detail::steady_seconds() - origin_;
   }
   void stall(double seconds) noexcept {
     if (options_.clock == DeviceClock::simulated)
       delay_ += seconds;
     else
-      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+      detail::sleep_for(seconds);
   }
   ToolState state_at(double t) const noexcept {
     ToolState state;
@@ -103,19 +113,13 @@ class MockDevice {
     if constexpr (requires { path_.velocity(t); }) state.velocity = path_.velocity(t);
     return state;
   }
-  static void corrupt(ToolState& state, const DeviceFault& f) noexcept {
-    if (f.kind == DeviceFault::Kind::invalid_read) state.valid = false;
-    if (f.kind == DeviceFault::Kind::nan_position) state.position[1] = std::numeric_limits<double>::quiet_NaN();
-    if (f.kind == DeviceFault::Kind::infinite_position) state.position[1] = infinity;
-    if (f.kind == DeviceFault::Kind::teleport) state.position += f.offset;
-  }
 
   Path path_;
   MockOptions options_;
   RenderLimits rendered_;
   ToolState last_;
-  Steady::time_point origin_ = Steady::now();
-  double delay_ = 0.0;  ///< [s] sum of simulated stalls
+  double origin_ = detail::steady_seconds();  ///< [s]
+  double delay_ = 0.0;                        ///< [s] sum of simulated stalls
   std::uint64_t reads_ = 0;
   bool unplugged_ = false;
 };
@@ -123,3 +127,7 @@ class MockDevice {
 static_assert(HapticDevice<MockDevice<>>);
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/device/mock_device.ipp>
+#endif

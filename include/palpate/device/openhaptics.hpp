@@ -4,6 +4,7 @@
 #pragma once
 
 #ifdef PALPATE_INCLUDE_OPENHAPTICS
+#include <chrono>
 #include <cstddef>  // HD_DEFAULT_DEVICE is NULL
 #if defined(__linux__) && !defined(linux)
 #define linux 1  // needed by the SDK, not defined in strict C++

@@ -2,15 +2,11 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/contact/detail/blade_cut.hpp>
-#include <palpate/contact/detail/servo_blade.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/thread_exchange.hpp>
-#include <palpate/haptic/detail/tool_input.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
@@ -24,7 +20,10 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
+class BladeCut;
 class ForceErrorMeasurement;
+class ServoBlade;
+class ToolInput;
 
 }  // namespace detail
 
@@ -52,6 +51,7 @@ class HapticServo {
   requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
+  ~HapticServo();
   HapticServo(const HapticServo&) = delete;
   HapticServo& operator=(const HapticServo&) = delete;
 
@@ -77,13 +77,13 @@ class HapticServo {
   /// Penetration of the deepest point that had no row in the last tick, relative to the deepest push: roughly the part
   /// of the force that is missing since contacts are more than ServoOptions::contact allows (degraded_model). For the
   /// tick's own thread.
-  double missing_depth() const noexcept { return problem_.missing_depth(); }
+  double missing_depth() const noexcept;
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
-  int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
+  int contact_rows() const noexcept;
   /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
   /// tick's own thread.
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
@@ -98,7 +98,7 @@ class HapticServo {
   ForceError force_error(std::size_t tool = 0) const noexcept { return errors_[tool]; }
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
   /// tick's own thread.
-  double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, contact_tools_[tool]); }
+  double indentation(std::size_t tool = 0) const noexcept;
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
@@ -107,11 +107,9 @@ class HapticServo {
   /// thread.
   Matrix3 proxy_rotation(std::size_t tool = 0) const noexcept;
   /// Whether a tool grasps a point of the surface. For the tick's own thread.
-  bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
+  bool is_holding(std::size_t tool = 0) const noexcept;
   /// State of a blade; null for another tool. For the tick's own thread.
-  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept {
-    return blades_[tool] ? &blades_[tool]->cut() : nullptr;
-  }
+  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept;
   /// Limits of a tool's gate.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
   /// Energy tank of a tool; null without one. For the tick's own thread.
@@ -152,7 +150,7 @@ class HapticServo {
   std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
-  ContactProblem problem_;
+  std::unique_ptr<ContactProblem> problem_;  // behind a pointer: its headers take long to compile
   CoarseFacetReport coarse_facets_;
   std::vector<detail::ToolInput> inputs_;
   std::vector<std::unique_ptr<detail::ServoBlade>> blades_;  // null for tools that are no blades

@@ -1,10 +1,14 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/detail/servo_blade.hpp>
 #include <palpate/contact/detail/tool_placement.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/detail/tool_input.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include <algorithm>
@@ -32,12 +36,12 @@ inline ContactParameters contact_parameters(const TissueView& tissue, ContactPar
 }
 /// A contact problem on the surface of a tissue, which is prepared for it. Also where all tools are blades: tissue that
 /// is cut then makes contact problems like this one, with room for the vertices that a cut adds.
-inline ContactProblem prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
-                                       const ContactParameters& contact) {
+inline std::unique_ptr<ContactProblem> prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
+                                                        const ContactParameters& contact) {
   const ContactParameters parameters =
       contact_parameters(tissue, contact.for_tools(tools.size(), tissue.contact_surface().has_large_strain()));
   tissue.prepare_tools(radii_of(tools), parameters);
-  return {tissue.contact_surface(), radii_of(tools), parameters};
+  return std::make_unique<ContactProblem>(tissue.contact_surface(), radii_of(tools), parameters);
 }
 inline ToolState unreadable() noexcept {
   ToolState s;
@@ -80,10 +84,12 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
     const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
     inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
   }
-  Snapshot empty(problem_.capacity());
+  Snapshot empty(problem_->capacity());
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
 }
+
+PALPATE_INLINE HapticServo::~HapticServo() = default;
 
 /// Notes or refuses tools that are larger than a metre.
 PALPATE_INLINE void HapticServo::check_units() {
@@ -121,21 +127,21 @@ PALPATE_INLINE void HapticServo::add_blade(const BladeTool& blade, std::size_t t
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
-  Status shared = tissue_.begin_tick(problem_);
+  Status shared = tissue_.begin_tick(*problem_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) take(i, i < states.size() ? states[i] : detail::unreadable());
   note_updates();
-  shared |= problem_.solve(tissue_, contact_tools_);
-  if (sweep_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
-  if (place_lost_tools()) shared |= problem_.solve(tissue_, contact_tools_);
+  shared |= problem_->solve(tissue_, contact_tools_);
+  if (sweep_lost_tools()) shared |= problem_->solve(tissue_, contact_tools_);
+  if (place_lost_tools()) shared |= problem_->solve(tissue_, contact_tools_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) recover(i);
   for (std::size_t i = 0; i < inputs_.size(); ++i) pass(i, shared);
-  if (tissue_.takes_forces()) tissue_.end_tick(problem_.vertex_forces(), problem_.point_forces());
+  if (tissue_.takes_forces()) tissue_.end_tick(problem_->vertex_forces(), problem_->point_forces());
   publish();
   return forces_;
 }
 
 PALPATE_INLINE void HapticServo::reset() noexcept {
-  problem_.reset();
+  problem_->reset();
   started_ = false;
   updates_ = 0;
   for (detail::ToolInput& input : inputs_) input.reset();
@@ -150,6 +156,21 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   publish();
 }
 
+PALPATE_INLINE double HapticServo::missing_depth() const noexcept {
+  return problem_->missing_depth();
+}
+PALPATE_INLINE int HapticServo::contact_rows() const noexcept {
+  return static_cast<int>(problem_->contacts().size());
+}
+PALPATE_INLINE double HapticServo::indentation(std::size_t tool) const noexcept {
+  return problem_->indentation(tool, contact_tools_[tool]);
+}
+PALPATE_INLINE bool HapticServo::is_holding(std::size_t tool) const noexcept {
+  return problem_->is_holding(tool);
+}
+PALPATE_INLINE const detail::BladeCut* HapticServo::blade(std::size_t tool) const noexcept {
+  return blades_[tool] ? &blades_[tool]->cut() : nullptr;
+}
 PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
   return blades_[tool] ? blades_[tool]->cut().edge() : Vector3(tissue_.to_world() * contact_tools_[tool].proxy);
 }
@@ -181,7 +202,7 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 
 PALPATE_INLINE void HapticServo::take(std::size_t i, const ToolState& state) noexcept {
   if (blades_[i]) return take_blade(*blades_[i], i, state);
-  inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), contact_tools_[i]);
+  inputs_[i].take(state, tissue_.to_world(), tissue_.contact_surface(), problem_->contacts(), contact_tools_[i]);
   if (!energies_.empty()) energies_[i].rotated(gates_[i].last_torque().dot(inputs_[i].rotation()));
 }
 
@@ -227,7 +248,7 @@ PALPATE_INLINE bool HapticServo::is_lost(std::size_t i) noexcept {
 
 /// Whether forces have moved the surface so far that a position inside the resting body is outside now.
 PALPATE_INLINE bool HapticServo::is_free(const Vector3& position, double depth) noexcept {
-  return !problem_.vertex_forces().empty() && problem_.closest(tissue_, position, depth).distance > 0.0;
+  return !problem_->vertex_forces().empty() && problem_->closest(tissue_, position, depth).distance > 0.0;
 }
 
 /// Whether nothing presses a tool any more but the linearisations of the tick ended before it reached its device.
@@ -258,9 +279,9 @@ PALPATE_INLINE bool HapticServo::place_lost_tools() noexcept {
   bool any = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     ContactTool& tool = contact_tools_[i];
-    if (tool.half_length > 0.0 || problem_.vertex_forces().empty() || !is_lost(i)) continue;
+    if (tool.half_length > 0.0 || problem_->vertex_forces().empty() || !is_lost(i)) continue;
     const double depth = tissue_.contact_surface().distance_of_body(tool.target);
-    const auto closest = problem_.closest(tissue_, tool.target, std::abs(depth));
+    const auto closest = problem_->closest(tissue_, tool.target, std::abs(depth));
     if (closest.triangle < 0) continue;
     tool.proxy = closest.point + tool.radius * closest.outward;
     any = true;
@@ -273,7 +294,7 @@ PALPATE_INLINE void HapticServo::recover(std::size_t i) noexcept {
   if (is_lost(i))
     inputs_[i].lose();
   else if (!inputs_[i].is_passing())
-    inputs_[i].note_outside(problem_.contacts(), contact_tools_[i]);
+    inputs_[i].note_outside(problem_->contacts(), contact_tools_[i]);
 }
 
 /// Whether a tool is inside the body or beside what can be touched of it without a force, is pushed by facets that it
@@ -285,8 +306,8 @@ PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
   if (!tool.active) return false;
   if (detail::is_zero(tool.force))
     return inputs_[i].is_passing() || inputs_[i].is_lost() || inputs_[i].is_beside_surface();
-  if (problem_.force_from_behind(tissue_, i) > most_from_behind) return true;
-  if (problem_.force_on_rim(tissue_, i) > most_on_rim) return true;
+  if (problem_->force_from_behind(tissue_, i) > most_from_behind) return true;
+  if (problem_->force_on_rim(tissue_, i) > most_on_rim) return true;
   if (!lost_contact_[i]) return false;
   const double distance = tissue_.contact_surface().distance_of_body(tool.proxy);
   return distance < 0.0 && !is_free(tool.proxy, -distance);
@@ -299,7 +320,7 @@ PALPATE_INLINE bool HapticServo::has_lost_contact(std::size_t i) noexcept {
 PALPATE_INLINE double HapticServo::estimate_error(std::size_t i) noexcept {
   ForceError& error = errors_[i];
   error = blades_[i] ? ForceError{0.0, infinity, blades_[i]->force().norm()}
-                     : problem_.force_error(tissue_, i, contact_tools_[i]);
+                     : problem_->force_error(tissue_, i, contact_tools_[i]);
   constexpr double whole = 0.2, none = 0.4;  // bounds, relative to the force
   if (!corrected_force_ || error.expected == 0.0 || contact_tools_[i].grasping) return 1.0;
   const double trusted = std::clamp((none - error.relative()) / (none - whole), 0.0, 1.0);
@@ -329,22 +350,22 @@ PALPATE_INLINE void HapticServo::pass(std::size_t i, Status shared) noexcept {
   const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
   forces_[i] = gates_[i].apply(force, torque, input.now(), time, input.readable(), input.restarted());
   if (energy != nullptr) energy->gave(forces_[i].force());
-  forces_[i].status |= input.status() | shared | limited | problem_.status_of(i, tool);
+  forces_[i].status |= input.status() | shared | limited | problem_->status_of(i, tool);
   if (tissue_.has_updates() && input.is_stalled(stale_tissue_after_)) forces_[i].status.set(StatusFlag::stalled_tissue);
   lost_contact_[i] = !blades_[i] && has_lost_contact(i);
   if (lost_contact_[i]) forces_[i].status.set(StatusFlag::lost_contact);
   const ForceError& error = errors_[i];
-  const double large = ContactProblem::flagged_error * problem_.scale_of_force(i, error.force);
+  const double large = ContactProblem::flagged_error * problem_->scale_of_force(i, error.force);
   const auto is_large = [&](double part) { return part > large && part < infinity; };
   if (is_large(error.parts.mesh)) forces_[i].status.set(StatusFlag::coarse_contact);
-  if (is_large(error.parts.merged) && problem_.has_fewer_points(i)) forces_[i].status.set(StatusFlag::degraded_model);
+  if (is_large(error.parts.merged) && problem_->has_fewer_points(i)) forces_[i].status.set(StatusFlag::degraded_model);
   if (is_large(error.parts.linearity)) forces_[i].status.set(StatusFlag::large_displacement);
   forces_[i].error = error;
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
   Snapshot& s = snapshots_.back();
-  s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.to_world());
+  s.note(problem_->contacts(), problem_->vertex_forces(), tissue_.to_world());
   for (std::size_t i = 0; i < contact_tools_.size(); ++i) {
     s.proxies[i] = proxy(i);
     s.axes[i] = proxy_axis(i);

@@ -39,36 +39,6 @@ class GroupTable {
   std::vector<Group> groups_;
 };
 
-inline const Group* GroupTable::find(std::string_view name) const noexcept {
-  const auto it = std::ranges::find(groups_, name, &Group::name);
-  return it == groups_.end() ? nullptr : &*it;
-}
-
-inline Group& GroupTable::get_or_add(std::string_view name, int dimension) {
-  const auto it = std::ranges::find(groups_, name, &Group::name);
-  if (it != groups_.end()) {
-    it->dimension = std::max(it->dimension, dimension);
-    return *it;
-  }
-  groups_.push_back({std::string(name), dimension, {}, {}, {}});
-  return groups_.back();
-}
-
-inline GroupTable GroupTable::chosen(const std::vector<std::string>& names) const {
-  if (names.empty()) return *this;
-  GroupTable result;
-  for (const std::string& name : names)
-    if (const Group* g = find(name)) result.get_or_add(name, g->dimension) = *g;
-  return result;
-}
-
-inline void GroupTable::tidy() {
-  for (Group& g : groups_) {
-    std::ranges::sort(g.nodes);
-    g.nodes.erase(std::unique(g.nodes.begin(), g.nodes.end()), g.nodes.end());
-  }
-}
-
 /// A mesh of elements E that owns its arrays. A plain aggregate of public arrays: fill it, then pass it to `admit()` or
 /// to a model.
 template <Element E>
@@ -173,3 +143,7 @@ Mesh<E> copy_mesh(const M& view, const std::vector<std::string>& group_names = {
 }
 
 }}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/mesh/mesh.ipp>
+#endif

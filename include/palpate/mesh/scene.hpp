@@ -77,7 +77,7 @@ class Scene {
   ~Scene();
 
   /// Constrains all three displacement components of every node to zero (essential condition).
-  Scene& fix(Selection where) { return prescribe(std::move(where), {0.0, 0.0, 0.0}); }
+  Scene& fix(Selection where);
 
   /// Prescribes the displacement [m] of the given components (essential condition). Two different values for one
   /// component are refused when the model is constructed.

@@ -16,6 +16,10 @@ PALPATE_INLINE Scene& Scene::operator=(const Scene&) = default;
 PALPATE_INLINE Scene& Scene::operator=(Scene&&) noexcept = default;
 PALPATE_INLINE Scene::~Scene() = default;
 
+PALPATE_INLINE Scene& Scene::fix(Selection where) {
+  return prescribe(std::move(where), {0.0, 0.0, 0.0});
+}
+
 PALPATE_INLINE Scene& Scene::prescribe(Selection where, Components values) {
   for (const auto& v : values) require_finite(v.value_or(0.0), "a prescribed displacement");
   prescribed_.push_back({std::move(where), values});
