@@ -17,7 +17,7 @@
 namespace palpate { inline namespace PALPATE_ABI {
 namespace detail {
 
-/// Not a template: Eigen's solver takes seconds to compile for every size.
+/// Not a template: it would be compiled for every size. Not finite if an entry is not finite.
 double largest_symmetric_eigenvalue(const MatrixX& symmetric);
 
 }  // namespace detail

@@ -2,13 +2,21 @@
 #pragma once
 
 #include <palpate/assembly/element_frequency.hpp>
+#include <palpate/linear/detail/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE double largest_symmetric_eigenvalue(const MatrixX& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<MatrixX>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  const double* const end = symmetric.data() + symmetric.size();
+  const double* const bad = std::find_if(symmetric.data(), end, [](double entry) { return !std::isfinite(entry); });
+  if (bad != end) return *bad;
+  MatrixX vectors = symmetric;
+  VectorX values;
+  symmetric_eigen(vectors, values);  // ascending
+  return values[values.size() - 1];
 }
 
 }}}  // namespace palpate::detail

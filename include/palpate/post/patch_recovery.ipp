@@ -3,8 +3,6 @@
 
 #include <palpate/post/patch_recovery.hpp>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <Eigen/QR>
 
 #include <cmath>
@@ -15,6 +13,21 @@ PALPATE_INLINE Vector3 PatchFrame::operator()(const Vector3& x) const noexcept {
   return map * (x - centre);
 }
 
+/// The inverse of the lower Cholesky factor of a symmetric matrix; not finite if the matrix is not positive definite.
+inline Matrix3 inverse_factor(const Matrix3& a) noexcept {
+  const double l00 = std::sqrt(a(0, 0)), l10 = a(1, 0) / l00, l20 = a(2, 0) / l00;
+  const double l11 = std::sqrt(a(1, 1) - l10 * l10), l21 = (a(2, 1) - l20 * l10) / l11;
+  const double l22 = std::sqrt(a(2, 2) - l20 * l20 - l21 * l21);
+  Matrix3 inverse = Matrix3::Zero();
+  inverse(0, 0) = 1.0 / l00;
+  inverse(1, 0) = -l10 / (l00 * l11);
+  inverse(1, 1) = 1.0 / l11;
+  inverse(2, 0) = (l10 * l21 / l11 - l20) / (l00 * l22);
+  inverse(2, 1) = -l21 / (l11 * l22);
+  inverse(2, 2) = 1.0 / l22;
+  return inverse;
+}
+
 PALPATE_INLINE PatchFrame patch_frame(const std::vector<Vector3>& points) {
   PatchFrame frame{points.front(), Matrix3::Identity()};
   Vector3 shift = Vector3::Zero();
@@ -23,9 +36,8 @@ PALPATE_INLINE PatchFrame patch_frame(const std::vector<Vector3>& points) {
   Matrix3 covariance = Matrix3::Zero();
   for (const Vector3& p : points)
     covariance += (p - frame.centre) * (p - frame.centre).transpose() / static_cast<double>(points.size());
-  const Eigen::LLT<Matrix3> factor(covariance);
-  const Matrix3 inverse = Matrix3(factor.matrixL()).inverse();
-  if (factor.info() == Eigen::Success && inverse.allFinite())
+  const Matrix3 inverse = inverse_factor(covariance);
+  if (inverse.allFinite())
     frame.map = inverse;
   else if (covariance.trace() > 0.0)
     frame.map /= std::sqrt(covariance.trace());

@@ -21,6 +21,18 @@ inline Matrix3 acoustic_tensor(const Matrix9& tangent, const Vector3& along) noe
   return q;
 }
 
+/// A^T T A, without Eigen's products, which take seconds to compile.
+inline Matrix3 congruent(const Matrix9& t, const Eigen::Matrix<double, 9, 3>& a) noexcept {
+  Matrix3 result = Matrix3::Zero();
+  for (int j = 0; j < 3; ++j)
+    for (int k = 0; k < 9; ++k) {
+      double sum = 0.0;
+      for (int l = 0; l < 9; ++l) sum += t(k, l) * a(l, j);
+      for (int i = 0; i < 3; ++i) result(i, j) += a(k, i) * sum;
+    }
+  return result;
+}
+
 PALPATE_INLINE bool is_stable(const Tensor3<double>& f, const Matrix9& tangent) noexcept {
   constexpr double compressed = 0.9, flat = 1e-6;
   const Matrix3 gradient = matrix3(f);
@@ -32,10 +44,12 @@ PALPATE_INLINE bool is_stable(const Tensor3<double>& f, const Matrix9& tangent) 
   if (stretch.prod() < compressed) {
     Eigen::Matrix<double, 9, 3> change;  // of F, by the relative change of each stretch
     for (int i = 0; i < 3; ++i) {
-      const Matrix3 along = gradient * axes.col(i) * axes.col(i).transpose();
+      const Vector3 axis = axes.col(i), moved = gradient * axis;
+      Matrix3 along;
+      for (int k = 0; k < 3; ++k) along.col(k) = axis[k] * moved;
       change.col(i) = vector9(tensor3<double>(along));
     }
-    if (!is_positive_definite(change.transpose() * tangent * change)) return false;
+    if (!is_positive_definite(congruent(tangent, change))) return false;
   }
   constexpr int middle =
       13;  // of the 27 directions with components -1, 0, 1: those before it are opposite to the others
