@@ -37,6 +37,8 @@ set(room_tools.hpp     10    roof)
 set(room_io.hpp        10    roof)
 set(room_advice.hpp    10    roof)
 set(room_testing.hpp   10    roof)
+set(room_source.hpp    10    roof)
+set(room_shipped_source.hpp 10 roof)
 
 if(NOT HEADERS)
   set(HEADERS ${CMAKE_CURRENT_LIST_DIR}/../include)

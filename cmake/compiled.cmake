@@ -12,9 +12,7 @@ set(palpate_units
   "shipped_tetrahedra model/shipped/*tet*"
   "shipped_hexahedra model/shipped/*hex*")
 
-# Adapters of SDKs must be included after the header of the SDK, in the program that uses it. Readers with other
-# libraries are palpate::xml_meshes; the C interface is a library of its own (c_interface.cmake).
-set(palpate_units_exclude "^device/(openhaptics|force_dimension|chai3d)\\.|^io/xml/|^c/")
+include(${CMAKE_CURRENT_LIST_DIR}/not_compiled.cmake)
 
 # PALPATE_COMPILED_WITHOUT: a pattern of units that a program does not use, for a build of that program only, which then
 # takes less time; not for an installation.
@@ -36,7 +34,7 @@ endfunction()
 
 foreach(file IN LISTS palpate_definitions)
   file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR}/include/palpate ${file})
-  if(NOT file MATCHES ${palpate_units_exclude})
+  if(NOT file MATCHES "${palpate_not_compiled}")
     list(APPEND left ${file})
   endif()
 endforeach()

@@ -1,0 +1,135 @@
+// For a program that is built without CMake: all definitions of palpate except those of shipped_source.hpp. Include
+// each of the two in one source of the program, in the same one or, to compile faster and with less memory, in two:
+//   // palpate.cpp
+//   #include <palpate/source.hpp>
+//   // palpate_models.cpp
+//   #include <palpate/shipped_source.hpp>
+// Compile all sources of the program with -DPALPATE_COMPILED and the same flags: docs/linking.md.
+// cmake/check_source.cmake, a test, fails when a file is missing here.
+#pragma once
+
+#if !defined(PALPATE_COMPILED)
+#error "palpate/source.hpp needs -DPALPATE_COMPILED, in the command that compiles every source of the program"
+#else
+#include <palpate/assembly/block_matrix.ipp>
+#include <palpate/assembly/detail/incomplete_cholesky.ipp>
+#include <palpate/assembly/element_frequency.ipp>
+#include <palpate/assembly/load_vector.ipp>
+#include <palpate/contact/contact.ipp>
+#include <palpate/contact/contact_problem.ipp>
+#include <palpate/contact/contact_surface.ipp>
+#include <palpate/contact/convex_hull.ipp>
+#include <palpate/contact/coulomb_friction.ipp>
+#include <palpate/contact/detail/blade_cut.ipp>
+#include <palpate/contact/detail/bvh.ipp>
+#include <palpate/contact/detail/candidates.ipp>
+#include <palpate/contact/detail/candidates_search.ipp>
+#include <palpate/contact/detail/complementarity.ipp>
+#include <palpate/contact/detail/contact_rows.ipp>
+#include <palpate/contact/detail/contact_rows_directions.ipp>
+#include <palpate/contact/detail/contact_samples.ipp>
+#include <palpate/contact/detail/point_levels.ipp>
+#include <palpate/contact/detail/proxy_motion.ipp>
+#include <palpate/contact/detail/row_compliance.ipp>
+#include <palpate/contact/detail/servo_blade.ipp>
+#include <palpate/contact/detail/surface_displacement.ipp>
+#include <palpate/contact/detail/triangle.ipp>
+#include <palpate/contact/force_accuracy.ipp>
+#include <palpate/contact/grasp.ipp>
+#include <palpate/contact/subfacet_compliance.ipp>
+#include <palpate/contact/tissue_group.ipp>
+#include <palpate/contact/tools.ipp>
+#include <palpate/core/executor.ipp>
+#include <palpate/core/rigid_motion.ipp>
+#include <palpate/core/setup_error.ipp>
+#include <palpate/cut/detail/cut_motion.ipp>
+#include <palpate/cut/detail/cut_view.ipp>
+#include <palpate/device/mock_device.ipp>
+#include <palpate/device/placement.ipp>
+#include <palpate/device/recorder.ipp>
+#include <palpate/device/render_limits.ipp>
+#include <palpate/device/simulated_device.ipp>
+#include <palpate/device/trajectory.ipp>
+#include <palpate/haptic/background_worker.ipp>
+#include <palpate/haptic/detail/tool_input.ipp>
+#include <palpate/haptic/energy_tank.ipp>
+#include <palpate/haptic/force_gate.ipp>
+#include <palpate/haptic/haptic_loop.ipp>
+#include <palpate/haptic/haptic_servo.ipp>
+#include <palpate/haptic/haptic_session.ipp>
+#include <palpate/haptic/loop_report.ipp>
+#include <palpate/haptic/servo_options.ipp>
+#include <palpate/haptic/servo_snapshot.ipp>
+#include <palpate/io/abaqus.ipp>
+#include <palpate/io/decimal.ipp>
+#include <palpate/io/detail/abaqus_groups.ipp>
+#include <palpate/io/detail/gmsh_file.ipp>
+#include <palpate/io/detail/mesh_builder.ipp>
+#include <palpate/io/file.ipp>
+#include <palpate/io/medit.ipp>
+#include <palpate/io/read_mesh.ipp>
+#include <palpate/io/tetgen.ipp>
+#include <palpate/io/veg.ipp>
+#include <palpate/io/vtk_legacy.ipp>
+#include <palpate/io/vtu.ipp>
+#include <palpate/io/write_msh.ipp>
+#include <palpate/linear/condition.ipp>
+#include <palpate/linear/dense_cholesky.ipp>
+#include <palpate/linear/dense_inverse.ipp>
+#include <palpate/linear/detail/block_lanczos.ipp>
+#include <palpate/linear/detail/cholesky_analysis.ipp>
+#include <palpate/linear/detail/dense_kernels.ipp>
+#include <palpate/linear/detail/front_block_sweeps.ipp>
+#include <palpate/linear/detail/front_reduction.ipp>
+#include <palpate/linear/detail/front_sweeps.ipp>
+#include <palpate/linear/detail/front_work.ipp>
+#include <palpate/linear/detail/node_graph.ipp>
+#include <palpate/linear/detail/spd_inverse.ipp>
+#include <palpate/linear/detail/vector_kernels.ipp>
+#include <palpate/linear/repeated_cholesky.ipp>
+#include <palpate/linear/sparse_cholesky.ipp>
+#include <palpate/material/detail/material_range.ipp>
+#include <palpate/material/orthotropic.ipp>
+#include <palpate/mesh/admission.ipp>
+#include <palpate/mesh/detail/bisection.ipp>
+#include <palpate/mesh/detail/mechanisms.ipp>
+#include <palpate/mesh/detail/rigid_modes.ipp>
+#include <palpate/mesh/diagnose.ipp>
+#include <palpate/mesh/generators.ipp>
+#include <palpate/mesh/generators_box.ipp>
+#include <palpate/mesh/generators_round.ipp>
+#include <palpate/mesh/mesh.ipp>
+#include <palpate/mesh/refine_near.ipp>
+#include <palpate/mesh/scene.ipp>
+#include <palpate/mesh/selection.ipp>
+#include <palpate/mesh/surface.ipp>
+#include <palpate/mesh/where.ipp>
+#include <palpate/model/admission_report.ipp>
+#include <palpate/model/cache/cache_file.ipp>
+#include <palpate/model/cache/detail/cache_key.ipp>
+#include <palpate/model/detail/half_space_source.ipp>
+#include <palpate/model/detail/patch_projection.ipp>
+#include <palpate/model/detail/project_half_space.ipp>
+#include <palpate/model/detail/touchable.ipp>
+#include <palpate/model/model_base.ipp>
+#include <palpate/model/moving/detail/body_parts.ipp>
+#include <palpate/model/moving/detail/contact_springs.ipp>
+#include <palpate/model/moving/detail/partly_linear_motion.ipp>
+#include <palpate/model/moving/detail/quasi_newton_motion.ipp>
+#include <palpate/model/moving/detail/renewable_factor.ipp>
+#include <palpate/model/moving/detail/secant_compliance.ipp>
+#include <palpate/model/moving/equilibrium.ipp>
+#include <palpate/model/moving/implicit_dynamics.ipp>
+#include <palpate/model/moving/moving_tissue.ipp>
+#include <palpate/model/policies.ipp>
+#include <palpate/model/setup_report.ipp>
+#include <palpate/model/static/detail/candidate_maker.ipp>
+#include <palpate/model/static/detail/contact_compliance.ipp>
+#include <palpate/model/static/detail/measure_force_error.ipp>
+#include <palpate/model/static/detail/prepared_system.ipp>
+#include <palpate/model/static/linear_tissue.ipp>
+#include <palpate/model/static/refine_to_accuracy.ipp>
+#include <palpate/model/static/suggest.ipp>
+#include <palpate/post/colour_map.ipp>
+#include <palpate/post/patch_recovery.ipp>
+#endif
