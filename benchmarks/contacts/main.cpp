@@ -36,9 +36,8 @@ bench::SupportedBody block(int across, int layers) {
 /// A device without limits of force, so that the gate changes nothing.
 ServoOptions options(const Case& c, double friction) {
   ServoOptions o;
-  o.device.peak_force = 1e6;
-  o.device.continuous_force = 1e6;
-  o.force_limits = ForceLimits::from(o.device);
+  o.devices = {{.peak_force = 1e6, .continuous_force = 1e6}};
+  o.force_limits = o.limits();
   o.force_limits->slew_rate = 1e9;
   o.contact.pressing_points = std::max(o.contact.pressing_points, c.contacts);
   o.contact.friction = friction;

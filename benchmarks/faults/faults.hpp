@@ -54,23 +54,21 @@ inline double depth_at(double t) {
   return -0.002 + std::min(in, out) * (0.010 + 0.0015 * std::sin(4.0 * 3.141592653589793 * t));
 }
 
+inline const DeviceLimits device{.peak_force = 8.0, .continuous_force = 8.0, .stiffness = 1000.0};
+
 inline ServoOptions session_options() {
-  ServoOptions o;
-  o.device.peak_force = 8.0;
-  o.device.continuous_force = 8.0;
-  o.device.stiffness = 1000.0;
-  o.stale_tissue_after = stale_after;
-  return o;
+  return {.stale_tissue_after = stale_after, .devices = {device}};
 }
 
 /// Runs a session in simulated time, so that the outcome is the same on every machine; threads are tested separately.
 inline Outcome run(const Fault& fault, double tissue_step) {
   Pad tissue = make_pad(tissue_step);
-  const ServoOptions options = session_options();
-  HapticServo servo(tissue, SphereTool{.radius = sphere}, options, EnergyTank(EnergyLimits::from(options.device)));
-  const ForceLimits limits = ForceLimits::from(options.device);
+  ServoOptions options = session_options();
+  options.limit_energy = true;
+  HapticServo servo(tissue, SphereTool{.radius = sphere}, options);
+  const ForceLimits limits = ForceLimits::from(device);
   PassivityObserver hand;
-  const double damping = EnergyLimits::from(options.device).damping;
+  const double damping = EnergyLimits::from(device).damping;
   double damped = 0.0;
   Outcome out;
   double next_step = 0.0, news = 0.0, quiet_until = -1.0;

@@ -25,8 +25,8 @@ int main() {
   std::printf("%-16s | %8s %8s %8s | %9s %9s %9s | %11s %11s %9s %9s\n", "fault, each s", "peak N", "step N", "raw N",
               "given mJ", "taken mJ", "tank mJ", "stale", "missed", "lost", "bad");
   int wrong = 0;
-  const auto limits = palpate::ForceLimits::from(session_options().device);
-  const auto energy = palpate::EnergyLimits::from(session_options().device);
+  const auto limits = palpate::ForceLimits::from(device);
+  const auto energy = palpate::EnergyLimits::from(device);
   double steady = 0.0;
   for (const Case& c : cases) {
     const Outcome o = run(c.fault, 0.01);

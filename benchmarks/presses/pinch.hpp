@@ -36,7 +36,7 @@ Pinch pinch(Model& model, const palpate::Tool& jaw, double radius, double fricti
   lower_options.start = place.below - Vector3(0, 0, radius + 2e-3);
   SimulatedDevice upper(upper_options), lower(lower_options);
   ServoOptions options;
-  options.device = upper.limits();
+  options.devices = {upper.limits()};
   options.contact.friction = friction;
   HapticServo servo(model, ToolList({jaw, jaw}), options);
   upper.start();

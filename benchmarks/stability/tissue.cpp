@@ -17,7 +17,7 @@ Block make_block(double youngs_modulus) {
 }
 ServoOptions options_with(double coupling, const SimulatedOptions& device) {
   ServoOptions options;
-  options.device = device.limits;
+  options.devices = {device.limits};
   options.rate = device.rate;
   options.coupling_stiffness = coupling;
   return options;

@@ -39,7 +39,7 @@ const Vector3 size(0.06, 0.06, 0.03);  // [m]
 /// The force of every millisecond [N], before the gate.
 std::vector<double> press_and_wait(Pad& pad) {
   ServoOptions options;
-  options.device = {.peak_force = 20.0, .stiffness = 5e4};  // a stiff finger
+  options.devices = {{.peak_force = 20.0, .stiffness = 5e4}};  // a stiff finger
   HapticServo servo(pad, finger, options);
   std::vector<double> force;
   double next = 0.0;

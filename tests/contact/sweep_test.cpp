@@ -252,9 +252,9 @@ TEST_CASE("torque passes the gate, to a device that renders it", "[contact][torq
   test::AnalyticTissue tissue(20, 0.03, 2e-3);
   const CapsuleTool tool(3e-3, 8e-3, Vector3::UnitX());
   ServoOptions options;
-  options.device.peak_torque = 0.02;
+  options.devices = {{.peak_torque = 0.02}};
   CHECK_THROWS_AS(HapticServo(tissue, tool, options), SetupError);  // no rotational stiffness
-  options.device.rotational_stiffness = 2.0;
+  options.devices.front().rotational_stiffness = 2.0;
   HapticServo six(tissue, tool, options), three(tissue, tool, ServoOptions{});
   ToolState state;
   double most = 0.0;

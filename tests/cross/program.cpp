@@ -516,10 +516,10 @@ class Program {
          ", " + tools + (options.empty() ? "" : ", {" + options + "}") + ");");
   }
   std::string servo_options() const {
-    const palpate::ServoOptions plain;
+    const palpate::DeviceLimits plain;
     std::vector<std::string> options, contact;
-    if (s_.rate != static_cast<int>(plain.device.rate)) options.push_back(member("rate", double(s_.rate)));
-    if (s_.coupling != plain.device.stiffness || !options.empty())
+    if (s_.rate != static_cast<int>(plain.rate)) options.push_back(member("rate", double(s_.rate)));
+    if (s_.coupling != plain.stiffness || !options.empty())
       options.push_back(member("coupling_stiffness", s_.coupling));
     if (s_.friction != 0.0) contact.push_back(member("friction", s_.friction));
     if (s_.capacity != 0) contact.push_back(member("capacity", s_.capacity));

@@ -163,9 +163,8 @@ void run_session(Tissue& tissue, const Tools& tools, const ServoOptions& given, 
   std::array<ScriptedDevice, most_tools> devices;
   for (std::size_t t = 0; t < tools.list.size(); ++t)
     devices[t] = ScriptedDevice(tools, t, t == 0 ? between : std::function<void(int)>());
-  SessionOptions options;
-  options.contact = given.contact;
-  options.grasp_buttons = given.grasp_buttons;
+  ServoOptions options = given;
+  options.devices.clear();
   const auto run = [&](auto&&... device) {
     HapticSession session(std::tie(device...), tissue, tools.list, options);
     for (int half = 0; half < 2; ++half) {
@@ -207,7 +206,7 @@ void run_all() {
           std::optional<BackgroundWorker> worker;
           if (with_worker) worker.emplace(body.model);
           ServoOptions options;
-          options.device.stiffness = 1000.0;
+          options.devices = {{.stiffness = 1000.0}};
           options.grasp_buttons = tools.grasps ? 1u : 0u;
           options.contact.friction = std::exchange(rough, !rough) ? 0.4 : 0.0;
           const auto between = [&](int tick) { body.between_ticks(tick, !with_worker); };

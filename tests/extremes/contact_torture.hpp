@@ -174,8 +174,8 @@ class TortureSession {
     ServoOptions options;
     if (chance(0.3)) options.contact.friction = random_.uniform(0.1, 1.0);
     friction_ = options.contact.friction;
-    stiffness_ = options.device.stiffness;
-    peak_force_ = options.device.peak_force;
+    stiffness_ = options.device_of(0).stiffness;
+    peak_force_ = options.device_of(0).peak_force;
     servo_ = std::make_unique<HapticServo>(*model_, ToolList(shapes), options);
   }
 

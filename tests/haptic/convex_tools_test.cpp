@@ -49,8 +49,7 @@ double smallest_gap(const ConvexTool& tool, const ContactSurface& surface, const
 
 ServoOptions with_torque() {
   ServoOptions options;
-  options.device.peak_torque = 0.1;
-  options.device.rotational_stiffness = 1.0;
+  options.devices = {{.peak_torque = 0.1, .rotational_stiffness = 1.0}};
   return options;
 }
 

@@ -48,7 +48,7 @@ DeepPress press(const Mesh<E>& mesh, const Material& material,
   HapticFEModel<E, Material, Solver> tissue(mesh, Scene().fix("z0").touch(where::sphere(middle, 0.022)), material, {},
                                             parameters);
   ServoOptions options;
-  options.device.peak_force = options.device.continuous_force = 100.0;
+  options.devices = {{.peak_force = 100.0, .continuous_force = 100.0}};
   options.coupling_stiffness = infinity;
   HapticServo servo(tissue, SphereTool{.radius = radius}, options);
   DeepPress result;
@@ -100,7 +100,7 @@ Rest rest_after(const Drag& drag) {
       copy_mesh<Smoothed<Tet4>>(pad(12)), Scene().fix("z0").touch("z1"), NeoHookean{5e3, 0.45, 1000.0}, {},
       {.step = drag.step, .inertia = drag.inertia, .mass_damping = 5.0});
   ServoOptions options;
-  options.device.peak_force = options.device.continuous_force = 100.0;
+  options.devices = {{.peak_force = 100.0, .continuous_force = 100.0}};
   options.coupling_stiffness = infinity;
   options.contact.friction = drag.friction;
   HapticServo servo(tissue, SphereTool{.radius = radius}, options);

@@ -13,8 +13,8 @@
 using namespace palpate;
 
 TEST_CASE("stalls and bad input: force continuous, energy bounded, counters exact", "[haptic][soft][faults]") {
-  const ForceLimits limits = ForceLimits::from(faults::session_options().device);
-  const EnergyLimits energy = EnergyLimits::from(faults::session_options().device);
+  const ForceLimits limits = ForceLimits::from(faults::device);
+  const EnergyLimits energy = EnergyLimits::from(faults::device);
   const double steady = faults::run({}, 0.01).last_force;
   CHECK(steady > 0.5);
   for (const faults::Fault& fault :
@@ -69,7 +69,7 @@ TEST_CASE("a tissue thread that hangs, a device thread that is late, and load in
     while (!done.load(std::memory_order_relaxed)) x = x + 1.0;
   });
   BackgroundWorker worker(hanging);
-  const ForceLimits limits = ForceLimits::from(options.device);
+  const ForceLimits limits = ForceLimits::from(faults::device);
   StatusCounters counters;
   int ticks = 0, wild = 0, kicks = 0, late = 0;
   double before_time = 0.0, most = 0.0;

@@ -100,7 +100,7 @@ struct WithoutNow : MockDevice<> {
 };
 
 /// Ticks of a recording whose force in a replay, in one run, is another.
-int ticks_that_differ(const std::vector<RecordedTick>& ticks, const SessionOptions& options = {}) {
+int ticks_that_differ(const std::vector<RecordedTick>& ticks, const ServoOptions& options = {}) {
   ReplayDevice replay(ticks);
   Recorder again(replay, ticks.size());
   HapticSession session(again, whole_pad(), sphere, options);
@@ -192,7 +192,7 @@ TEST_CASE("a slower device reduces the rate of a session and the coupling stiffn
 
 TEST_CASE("a session refuses what its device does not allow, with value and threshold", "[haptic][session]") {
   MockDevice stylus = pressing(0.015, 1e-3), strong = pressing(0.015, 1e-3, {.peak_force = 8.0, .stiffness = 3000.0});
-  const auto refused = [&](const SessionOptions& options, std::int64_t device = 1) {
+  const auto refused = [&](const ServoOptions& options, std::int64_t device = 1) {
     const SetupProblem problem = test::refusal([&] {
       HapticSession session(std::tie(strong, stylus), whole_pad(), {sphere, sphere}, options);
     });
@@ -217,7 +217,7 @@ TEST_CASE("a session refuses what its device does not allow, with value and thre
   forces = ForceLimits::from(stylus.limits());
   forces.peak_torque = 0.1;
   CHECK(refused({.force_limits = forces}, 0).threshold == 0.0);
-  const auto session = [&](const SessionOptions& options) {
+  const auto session = [&](const ServoOptions& options) {
     HapticSession s(stylus, whole_pad(), sphere, options);
     return s.rate();
   };
@@ -225,6 +225,9 @@ TEST_CASE("a session refuses what its device does not allow, with value and thre
       test::refusal([&] { session({.rate = 500.0, .force_limits = ForceLimits::from(stylus.limits())}); });
   CHECK(period.value == 1e-3);
   CHECK(period.threshold == 2e-3);
+  const SetupProblem devices = test::refusal([&] { session({.devices = {stylus.limits()}}); });
+  CHECK(devices.kind == SetupErrorKind::bad_argument);
+  CHECK(devices.hint.find("ServoOptions::devices") != std::string::npos);
   CHECK(session({.rate = 500.0, .coupling_stiffness = 250.0}) == 500.0);
   forces = ForceLimits::from(stylus.limits(), 500.0);
   forces.peak_force = 2.0;
@@ -250,9 +253,23 @@ TEST_CASE("a servo without a session has per-tool limits, too", "[haptic][servo]
   CHECK(servo.limits(1).peak_force == 2.0);
   for (std::size_t i : {0u, 1u}) CHECK(servo.limits(i).period == 1.0 / 500.0);
   CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(whole_pad(), sphere, options));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, HapticServo(whole_pad(), {sphere, sphere, sphere}, options));
   options.devices[1].stiffness = -1.0;
   const SetupProblem problem = test::refusal([&] { HapticServo(whole_pad(), {sphere, sphere}, options); });
   CHECK(problem.ids == std::vector<std::int64_t>{1});
+  options.devices.resize(1);  // for all tools
+  const HapticServo equal(whole_pad(), {sphere, sphere}, options);
+  for (std::size_t i : {0u, 1u}) CHECK(equal.limits(i).peak_force == 1.0);
+  CHECK(equal.energy() == nullptr);
+}
+
+TEST_CASE("a servo without a session limits the energy of each tool as its device allows", "[haptic][servo]") {
+  const DeviceLimits weak{.peak_force = 1.0}, strong{.peak_force = 2.0, .stiffness = 1000.0};
+  const HapticServo servo(whole_pad(), {sphere, sphere}, {.limit_energy = true, .devices = {weak, strong}});
+  CHECK(servo.energy(0)->limits().allowance == EnergyLimits::from(weak).allowance);
+  CHECK(servo.energy(1)->limits().allowance == EnergyLimits::from(strong).allowance);
+  const HapticServo own(whole_pad(), {sphere, sphere}, {.limit_energy = true}, EnergyTank(EnergyLimits{.delay = 3}));
+  for (std::size_t i : {0u, 1u}) CHECK(own.energy(i)->limits().delay == 3);
 }
 
 TEST_CASE("start, read, stop, start again: the second run begins as the first did", "[haptic][session][timing]") {

@@ -17,8 +17,7 @@ using namespace palpate;
 /// the status of the last 100 ticks of 1 ms.
 inline std::pair<Vector3, Status> press_and_hold(MovingTissue& tissue, const Vector3& top, double radius, int ticks) {
   ServoOptions options;
-  options.device.peak_force = 20.0;
-  options.device.stiffness = 2000.0;
+  options.devices = {{.peak_force = 20.0, .stiffness = 2000.0}};
   HapticServo servo(tissue, SphereTool{.radius = radius}, options);
   Status status;
   double next = 0.0;

@@ -138,7 +138,7 @@ TEST_CASE("a blade's gate: ramp, lost reads, NaN, jumps, stale input, peak force
   BladeTool tough = blade;
   tough.toughness = 1e4;  // 100 N
   ServoOptions options;
-  options.device.peak_force = options.device.continuous_force = 2.0;
+  options.devices = {{.peak_force = 2.0, .continuous_force = 2.0}};
   HapticServo servo(tissue, tough, options);
   int tick = 0;
   const auto hold = [&](double z, int ticks) {

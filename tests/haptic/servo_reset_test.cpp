@@ -175,8 +175,7 @@ TEST_CASE("a session after reset gives bitwise the same run", "[haptic][servo]")
     check_replay(servo, 1);
   }
   SECTION("a capsule with torque, and another") {
-    options.device.peak_torque = 0.1;
-    options.device.rotational_stiffness = 1.0;
+    options.devices = {{.peak_torque = 0.1, .rotational_stiffness = 1.0}};
     const CapsuleTool capsule(3e-3, 6e-3, Vector3(1.0, 0.0, 0.0));
     HapticServo servo(test::whole_pad(), std::vector<CapsuleTool>{capsule, capsule}, options);
     check_replay(servo, 2);

@@ -37,8 +37,7 @@ ImplicitParameters with_step(double step) {
 }
 ServoOptions device() {
   ServoOptions o;
-  o.device.peak_force = 20.0;
-  o.device.stiffness = 2000.0;
+  o.devices = {{.peak_force = 20.0, .stiffness = 2000.0}};
   return o;
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("every scene renders the same forces with and without the window's par
     std::vector<SteppedReplay> replays;
     for (const auto& ticks : plain)
       replays.push_back({ReplayDevice(ticks, limits), replays.empty() ? organ.get() : nullptr});
-    const SessionOptions options = live::tuned_session(scene, quick_tuning(scene));
+    const ServoOptions options = live::tuned_session(scene, quick_tuning(scene));
     std::optional<HapticSession> session;
     if (replays.size() == 1)
       session.emplace(replays[0], view, scene.tools, options);

@@ -63,8 +63,7 @@ std::vector<Vector3> press(Model& model, HapticServo& servo, double depth, int t
 }
 inline ServoOptions stiff_device() {
   ServoOptions o;
-  o.device.peak_force = 20.0;
-  o.device.stiffness = 2000.0;
+  o.devices = {{.peak_force = 20.0, .stiffness = 2000.0}};
   return o;
 }
 

@@ -60,11 +60,10 @@ int main(int argc, char** argv) {
   ServoOptions options;
   options.contact.friction = 0.4;
   options.grasp_buttons = 1;
-  options.device.peak_torque = 0.05;
-  options.device.rotational_stiffness = 1.0;
+  options.limit_energy = true;
+  options.devices = {{.peak_torque = 0.05, .rotational_stiffness = 1.0}};
   const std::vector<CapsuleTool> tools{CapsuleTool(4e-3, 6e-3, Vector3::UnitX()), CapsuleTool(SphereTool{3e-3})};
-  Session first(a, tools, options, EnergyTank(EnergyLimits::from(options.device))),
-      second(b, tools, options, EnergyTank(EnergyLimits::from(options.device)));
+  Session first(a, tools, options), second(b, tools, options);
   double sum = 0.0;
   for (int k = 0; k < 4000; ++k) {
     const std::array<ToolState, 2> now{state(k, -1.0), state(k + 137, 1.0)};

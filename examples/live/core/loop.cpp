@@ -10,7 +10,7 @@ using Steady = std::chrono::steady_clock;
 
 class RealTimeLoop final : public Loop {
  public:
-  RealTimeLoop(Organ& organ, Taps& taps, const std::vector<Tool>& tools, const SessionOptions& options)
+  RealTimeLoop(Organ& organ, Taps& taps, const std::vector<Tool>& tools, const ServoOptions& options)
       : tissue_(organ.view()) {
     if (taps.size() == 1)
       session_.emplace(*taps[0], tissue_, tools, options);
@@ -40,7 +40,7 @@ class RealTimeLoop final : public Loop {
 
 class VirtualTimeLoop final : public Loop {
  public:
-  VirtualTimeLoop(Organ& organ, Taps& taps, const std::vector<Tool>& tools, const SessionOptions& options)
+  VirtualTimeLoop(Organ& organ, Taps& taps, const std::vector<Tool>& tools, const ServoOptions& options)
       : organ_(&organ), taps_(&taps), states_(taps.size()) {
     std::vector<DeviceLimits> limits;
     for (const auto& tap : taps) limits.push_back(tap->limits());
@@ -95,11 +95,11 @@ class VirtualTimeLoop final : public Loop {
 }  // namespace
 
 std::unique_ptr<Loop> start_real_time(Organ& organ, Taps& taps, const std::vector<Tool>& tools,
-                                      const SessionOptions& options) {
+                                      const ServoOptions& options) {
   return std::make_unique<RealTimeLoop>(organ, taps, tools, options);
 }
 std::unique_ptr<Loop> start_virtual_time(Organ& organ, Taps& taps, const std::vector<Tool>& tools,
-                                         const SessionOptions& options) {
+                                         const ServoOptions& options) {
   return std::make_unique<VirtualTimeLoop>(organ, taps, tools, options);
 }
 

@@ -29,9 +29,9 @@ class Loop {
 
 /// A HapticSession: its own thread ticks a thousand times a second, a BackgroundWorker steps and cuts.
 std::unique_ptr<Loop> start_real_time(Organ& organ, Taps& taps, const std::vector<Tool>& tools,
-                                      const SessionOptions& options);
+                                      const ServoOptions& options);
 /// A HapticServo ticked by the caller, and background work at fixed times: the same in every run.
 std::unique_ptr<Loop> start_virtual_time(Organ& organ, Taps& taps, const std::vector<Tool>& tools,
-                                         const SessionOptions& options);
+                                         const ServoOptions& options);
 
 }  // namespace live

@@ -43,7 +43,7 @@ void Stage::start(const Tuning& tuning) {
   tools_ = tuned_tools(scene_, tuning);
   for (std::size_t i = 0, moved = 0; i < tools_.size(); ++i)
     if (mice_[i] != nullptr) hand_.set_radius(moved++, radius_of(tools_[i]));
-  const SessionOptions options = tuned_session(scene_, tuning);
+  const ServoOptions options = tuned_session(scene_, tuning);
   loop_ = clock_ == Clock::real ? start_real_time(*organ_, taps_, tools_, options)
                                 : start_virtual_time(*organ_, taps_, tools_, options);
   if (clock_ == Clock::real) maker_ = std::make_unique<SurfaceMaker>(*organ_, snapshot(), field);

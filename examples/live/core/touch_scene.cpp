@@ -36,8 +36,8 @@ std::vector<Tool> tuned_tools(const TouchScene& scene, const Tuning& tuning) {
   return tools;
 }
 
-SessionOptions tuned_session(const TouchScene& scene, const Tuning& tuning) {
-  SessionOptions options = scene.session;
+ServoOptions tuned_session(const TouchScene& scene, const Tuning& tuning) {
+  ServoOptions options = scene.session;
   options.contact.friction = tuning.friction;
   options.coupling_stiffness = tuning.coupling;
   return options;

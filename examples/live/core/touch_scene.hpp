@@ -45,7 +45,7 @@ struct TouchScene {
   std::vector<Composition> compositions;  ///< the first is the one to begin with
   std::vector<Tool> tools;
   std::vector<Vector3> starts;  ///< [m] of every tool
-  SessionOptions session{};
+  ServoOptions session{};
   MotionRange range{};  ///< of a tool that grasps
   Camera camera{};
   std::string script;         ///< scripted input, see pointer_script.hpp
@@ -73,7 +73,7 @@ TouchScene make_scene(const std::string& name);
 TouchScene make_own_scene(const std::string& file, const std::string& fix, const std::string& touch);
 
 std::vector<Tool> tuned_tools(const TouchScene& scene, const Tuning& tuning);
-SessionOptions tuned_session(const TouchScene& scene, const Tuning& tuning);
+ServoOptions tuned_session(const TouchScene& scene, const Tuning& tuning);
 double radius_of(const Tool& tool);  ///< [m]; of a blade a margin
 
 }  // namespace live

@@ -29,8 +29,9 @@ class ToolInput;
 
 /// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
 /// pose and passes it through the gate; no other path leads to the device. Refers to the tissue, which must outlive it;
-/// neither copied nor moved. An EnergyTank given as last argument limits the energy given to each tool. One class for
-/// tissues of all types: it refers to its tissue through TissueView. With a HapticDevice, HapticSession is simpler.
+/// neither copied nor moved. An EnergyTank given as last argument is used in place of those of
+/// ServoOptions::limit_energy, for other EnergyLimits. One class for tissues of all types: it refers to its tissue
+/// through TissueView. With a HapticDevice, HapticSession is simpler.
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
@@ -45,8 +46,7 @@ class HapticServo {
   template <class T>
   requires(!std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
-      : HapticServo(TissueView(tissue), tools, options,
-                    energy ? std::vector<EnergyTank>(tools.size(), *energy) : std::vector<EnergyTank>{}) {}
+      : HapticServo(TissueView(tissue), tools, options, energy) {}
   template <class T>
   requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
@@ -126,8 +126,7 @@ class HapticServo {
  private:
   friend class HapticSession;
   friend class detail::ForceErrorMeasurement;
-  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
-              std::vector<EnergyTank> energies);
+  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options, const Energy& energy);
 
   void check_units();
   void add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options);

@@ -55,7 +55,7 @@ inline bool is_zero(const Vector3& v) noexcept {
 }  // namespace detail
 
 PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
-                                        std::vector<EnergyTank> energies)
+                                        const Energy& energy)
     : tissue_(tissue),
       claimed_(tissue_.claim()),
       notes_(tissue_.notes()),
@@ -64,7 +64,6 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
       problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact)),
       coarse_facets_(
           detail::report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
-      energies_(std::move(energies)),
       forces_(tools.size()),
       errors_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
@@ -81,6 +80,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* blade = std::get_if<BladeTool>(&tools[i])) add_blade(*blade, i, options);
     gates_.emplace_back(options.limits(i));
+    if (energy || options.limit_energy)
+      energies_.push_back(energy ? *energy : EnergyTank(EnergyLimits::from(options.device_of(i))));
     const bool rotates = !blades_[i] && (contact_tools_[i].half_length > 0.0 || gates_[i].limits().peak_torque > 0.0);
     inputs_.emplace_back(static_cast<int>(i), rotates, options.grasp_buttons);
   }

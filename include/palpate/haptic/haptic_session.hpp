@@ -1,4 +1,4 @@
-// Devices, tools and a tissue in one object, with its options: everything between a hand and a model.
+// Devices, tools and a tissue in one object: everything between a hand and a model.
 #pragma once
 
 #include <palpate/haptic/haptic_loop.hpp>
@@ -11,26 +11,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Everything is optional: defaults of force limits, stiffness and rate are each device's limits(). A given value is
-/// valid for all tools and may be lower than the devices allow, not higher.
-struct SessionOptions {
-  std::optional<double> rate{};                  ///< [1/s] default: that of the slowest device
-  std::optional<double> coupling_stiffness{};    ///< [N/m] between proxy and device; default: that of each device,
-                                                 ///< reduced in proportion at a lower rate
-  std::optional<double> rotational_stiffness{};  ///< [N m/rad] the same for rotations
-  std::optional<ForceLimits> force_limits{};     ///< default ForceLimits::from(each device, rate)
-  ContactParameters contact{};                   ///< includes friction
-  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
-  bool corrected_force = false;     ///< whether ForceError::expected is subtracted from the force, where its
-                                    ///< bound is at most a fifth of the force, in part up to two fifths
-  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
-  bool limit_energy = false;        ///< an EnergyTank per tool, EnergyLimits::from its device
-};
-
-/// The options of a servo for tools on these devices, one each. Throws bad_argument (ids: the device; value and
-/// threshold) when there is not one device per tool, for a rate above a device's, and for a coupling or rotational
-/// stiffness, force, torque or continuous force above that of a device, or force limits for another rate.
-ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools, const SessionOptions& options);
+/// The options with these devices, a tool on each. Throws bad_argument (ids: the device; value and threshold) when
+/// there is not one device per tool or the options have devices already, for a rate above a device's, and for a
+/// coupling or rotational stiffness, force, torque or continuous force above that of a device, or force limits for
+/// another rate.
+ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools, const ServoOptions& options);
 
 /// One or more devices with a tool each, one tissue, one servo and one loop. Force limits, coupling stiffness and rate
 /// are those of each device's limits(); the loop and the servo have one rate. State number i, read from device i, moves
@@ -43,21 +28,21 @@ ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t
 /// servo thread, call HapticServo::tick in its callback.
 class HapticSession {
  public:
-  /// Throws bad_argument for what HapticServo refuses, for options beyond a device's limits (SessionOptions), when
-  /// there is not one tool per device, and for a device given twice. Allocates everything that a tick needs.
+  /// Throws bad_argument for what HapticServo refuses, for options beyond a device's limits or with devices,
+  /// when there is not one tool per device, and for a device given twice. Allocates everything that a tick needs.
   template <HapticDevice D, class T>
-  HapticSession(D& device, T& tissue, const ToolList& tool, const SessionOptions& options = {})
+  HapticSession(D& device, T& tissue, const ToolList& tool, const ServoOptions& options = {})
       : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, TissueView(tissue), tool, options) {
   }
   /// Several devices of any types: std::tie(left, right).
   template <HapticDevice... D, class T>
-  HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools, const SessionOptions& options = {})
+  HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools, const ServoOptions& options = {})
       : HapticSession(detail::loop_devices(devices), TissueView(tissue), tools, options) {}
   /// A temporary device or tissue.
   template <class D, class T>
   requires((!std::is_lvalue_reference_v<D> && HapticDevice<D>) ||
            (!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>))
-      HapticSession(D&&, T&&, const ToolList&, const SessionOptions& = {})
+      HapticSession(D&&, T&&, const ToolList&, const ServoOptions& = {})
   = delete;
   HapticSession(const HapticSession&) = delete;
   HapticSession& operator=(const HapticSession&) = delete;
@@ -89,9 +74,7 @@ class HapticSession {
 
  private:
   HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue, const ToolList& tools,
-                const SessionOptions& options);
-  HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue, const ToolList& tools,
-                const ServoOptions& options, bool limit_energy);
+                const ServoOptions& options);
 
   HapticServo servo_;
   double rate_;

@@ -54,13 +54,6 @@ inline std::vector<DeviceLimits> limits_of(const std::vector<LoopDevice>& device
   return all;
 }
 
-inline std::vector<EnergyTank> tanks_of(const std::vector<DeviceLimits>& devices, bool wanted) {
-  std::vector<EnergyTank> all;
-  if (!wanted) return all;
-  for (const DeviceLimits& d : devices) all.emplace_back(EnergyLimits::from(d));
-  return all;
-}
-
 /// Every start of a session resets the servo; so does a start that a device replays.
 inline LoopServo session_servo(HapticServo& servo) noexcept {
   LoopServo view = loop_servo(servo);
@@ -71,14 +64,16 @@ inline LoopServo session_servo(HapticServo& servo) noexcept {
 }  // namespace detail
 
 PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools,
-                                          const SessionOptions& options) {
+                                          const ServoOptions& options) {
   if (devices.size() != tools)
     raise(SetupErrorKind::bad_argument,
           std::to_string(tools) + " tools for " + std::to_string(devices.size()) + " devices",
           "Give one tool per device, in the same order");
-  ServoOptions o;
+  if (!options.devices.empty())
+    raise(SetupErrorKind::bad_argument, "the options of a session have devices of their own",
+          "Leave ServoOptions::devices empty: a session takes the limits of its devices");
+  ServoOptions o = options;
   o.devices = devices;
-  o.rate = options.rate;
   o.rate = o.tick_rate();
   const double rate = *o.rate;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -94,25 +89,13 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
     if (options.force_limits) within.require(*options.force_limits, device);
   }
   if (options.force_limits) detail::require_period(*options.force_limits, rate);
-  o.coupling_stiffness = options.coupling_stiffness;
-  o.rotational_stiffness = options.rotational_stiffness;
-  o.force_limits = options.force_limits;
-  o.contact = options.contact;
-  o.stale_tissue_after = options.stale_tissue_after;
-  o.corrected_force = options.corrected_force;
-  o.grasp_buttons = options.grasp_buttons;
   return o;
 }
 
 PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue,
-                                            const ToolList& tools, const SessionOptions& options)
-    : HapticSession(devices, tissue, tools, servo_options(detail::limits_of(devices), tools.size(), options),
-                    options.limit_energy) {}
-
-PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue,
-                                            const ToolList& tools, const ServoOptions& options, bool limit_energy)
-    : servo_(tissue, tools, options, detail::tanks_of(options.devices, limit_energy)),
-      rate_(options.tick_rate()),
+                                            const ToolList& tools, const ServoOptions& options)
+    : servo_(tissue, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}),
+      rate_(options.rate.value_or(detail::rate_of(devices))),
       loop_(std::make_unique<detail::HapticLoop>(devices, detail::session_servo(servo_), rate_)) {}
 
 PALPATE_INLINE HapticSession::~HapticSession() {

@@ -11,10 +11,10 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// Options of a servo. The limits are those of the devices that render; HapticSession reads them from its devices.
+/// Options of a servo, also of the one in a HapticSession. Everything is optional: defaults of rate, stiffness and
+/// force limits are those of the devices. A given value is valid for all tools. A session takes `devices` from its
+/// devices and refuses values that are higher than they allow; a servo alone accepts them, for verification.
 struct ServoOptions {
-  DeviceLimits device{};                         ///< of the device that renders, if `devices` is empty
-  std::vector<DeviceLimits> devices{};           ///< one per tool, if they differ
   std::optional<double> rate{};                  ///< [1/s] of ticks; default: that of the slowest device
   std::optional<double> coupling_stiffness{};    ///< [N/m] between proxy and device; default: that of each device,
                                                  ///< reduced in proportion at a lower rate; infinity for verification
@@ -22,12 +22,15 @@ struct ServoOptions {
                                                  ///< rigid for a device that renders no torque
   std::optional<ForceLimits> force_limits{};     ///< of every tool; default ForceLimits::from(its device, rate)
   ContactParameters contact{};                   ///< includes friction
-  double stale_tissue_after = 0.5;  ///< [s] without update of a tissue that moves by itself until forces fade
-  bool corrected_force = false;     ///< whether ForceError::expected is subtracted from the force, where its
-                                    ///< bound is at most a fifth of the force, in part up to two fifths
-  std::uint32_t grasp_buttons = 0;  ///< while one of these is pressed, the tool grasps the point it touched
+  double stale_tissue_after = 0.5;      ///< [s] without update of a tissue that moves by itself until forces fade
+  bool corrected_force = false;         ///< whether ForceError::expected is subtracted from the force, where its
+                                        ///< bound is at most a fifth of the force, in part up to two fifths
+  std::uint32_t grasp_buttons = 0;      ///< while one of these is pressed, the tool grasps the point it touched
+  bool limit_energy = false;            ///< an EnergyTank per tool, EnergyLimits::from its device
+  std::vector<DeviceLimits> devices{};  ///< that render: one for all tools, or one per tool; none: DeviceLimits{}.
+                                        ///< Empty in the options of a session
 
-  const DeviceLimits& device_of(std::size_t tool) const noexcept { return devices.empty() ? device : devices[tool]; }
+  DeviceLimits device_of(std::size_t tool) const noexcept;
   /// [1/s]
   double tick_rate() const noexcept;
   /// The limits of a tool's force gate.
@@ -50,7 +53,8 @@ inline constexpr double no_sphere = 1e6;
 
 /// The tools of a servo in the contact problem; blades as tools that are never active. They refer to the shapes of the
 /// convex tools of the list, which must outlive them. Throws bad_argument for an
-/// invalid tool, coupling or number of tools, or when there are `devices`, but not one per tool (ids: the tool).
+/// invalid tool, coupling or number of tools, or when there are several `devices`, but not one per tool (ids: the
+/// tool).
 std::vector<ContactTool> make_contact_tools(const ToolList& tools, const ServoOptions& options);
 
 }  // namespace detail

@@ -8,8 +8,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE DeviceLimits ServoOptions::device_of(std::size_t tool) const noexcept {
+  if (devices.empty()) return {};
+  return devices.size() == 1 ? devices.front() : devices[tool];
+}
+
 PALPATE_INLINE double ServoOptions::tick_rate() const noexcept {
-  double slowest = devices.empty() ? device.rate : infinity;
+  double slowest = devices.empty() ? DeviceLimits{}.rate : infinity;
   for (const DeviceLimits& d : devices) slowest = std::min(slowest, d.rate);
   return rate.value_or(slowest);
 }
@@ -38,7 +43,7 @@ inline constexpr double softest_coupling = 1e-6;
 }
 
 PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions& options) {
-  const DeviceLimits& device = options.device_of(tool);
+  const DeviceLimits device = options.device_of(tool);
   const double stiffness =
       options.coupling_stiffness.value_or(stable_at(options.tick_rate(), device, device.stiffness));
   if (!(stiffness >= softest_coupling))
@@ -48,7 +53,7 @@ PALPATE_INLINE double coupling_stiffness_of(std::size_t tool, const ServoOptions
 
 /// A tool of a radius, with its coupling.
 inline ContactTool make_coupled_tool(double radius, std::size_t i, const ServoOptions& options) {
-  const DeviceLimits& device = options.device_of(i);
+  const DeviceLimits device = options.device_of(i);
   const double rate = options.tick_rate(), stiffness = coupling_stiffness_of(i, options);
   const bool renders_torque = device.rotational_stiffness > 0.0 || options.limits(i).peak_torque > 0.0;
   const double rotational = options.rotational_stiffness.value_or(
@@ -82,11 +87,11 @@ PALPATE_INLINE std::vector<ContactTool> make_contact_tools(const ToolList& tools
   if (tools.size() == 0 || tools.size() > maximum_tools)
     raise(SetupErrorKind::bad_argument,
           "a servo has one to " + std::to_string(maximum_tools) + " tools, not " + std::to_string(tools.size()));
-  if (!options.devices.empty() && options.devices.size() != tools.size())
+  if (options.devices.size() > 1 && options.devices.size() != tools.size())
     raise(SetupErrorKind::bad_argument,
           "ServoOptions has limits of " + std::to_string(options.devices.size()) + " devices for " +
               std::to_string(tools.size()) + " tools",
-          "Give ServoOptions::devices one entry per tool, or none and `device` for all");
+          "Give ServoOptions::devices one entry per tool, or one for all");
   std::vector<ContactTool> made;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (const auto* sphere = std::get_if<SphereTool>(&tools[i]))

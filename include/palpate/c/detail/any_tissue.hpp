@@ -41,8 +41,7 @@ class AnyTissue {
   virtual const ModelBase& base() const noexcept = 0;
   /// Displacement under the loads and the forces of tools of the last step, 3 per admitted node [m].
   virtual SolveReport displacement(VectorX& u) noexcept = 0;
-  virtual std::unique_ptr<HapticServo> make_servo(const ToolList& tools, const ServoOptions& options,
-                                                  const HapticServo::Energy& energy) = 0;
+  virtual std::unique_ptr<HapticServo> make_servo(const ToolList& tools, const ServoOptions& options) = 0;
   virtual std::unique_ptr<Skin> make_skin() = 0;
   /// Null for a tissue without background work.
   virtual std::unique_ptr<BackgroundWorker> make_worker() = 0;

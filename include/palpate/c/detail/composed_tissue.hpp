@@ -78,9 +78,8 @@ class ComposedTissue final : public AnyTissue {
   const SetupReport& report() const noexcept override { return model_.report(); }
   const ModelBase& base() const noexcept override { return model_; }
   SolveReport displacement(VectorX& u) noexcept override { return model_.displacement_with({}, u); }
-  std::unique_ptr<HapticServo> make_servo(const ToolList& tools, const ServoOptions& options,
-                                          const HapticServo::Energy& energy) override {
-    return std::make_unique<HapticServo>(static_cast<Touched&>(model_), tools, options, energy);
+  std::unique_ptr<HapticServo> make_servo(const ToolList& tools, const ServoOptions& options) override {
+    return std::make_unique<HapticServo>(static_cast<Touched&>(model_), tools, options);
   }
   std::unique_ptr<Skin> make_skin() override {
     if constexpr (IsCut<Model>)

@@ -56,7 +56,7 @@ ToolList tools_from(const palpate_tool* tools, std::size_t count) {
 
 ServoOptions servo_options_from(const palpate_session_options& given) {
   ServoOptions options;
-  DeviceLimits& device = options.device;
+  DeviceLimits& device = options.devices.emplace_back();
   device.rate = value_or(given.rate, device.rate);
   device.peak_force = value_or(given.peak_force, device.peak_force);
   device.continuous_force = value_or(given.continuous_force, device.continuous_force);
@@ -67,6 +67,7 @@ ServoOptions servo_options_from(const palpate_session_options& given) {
   options.stale_tissue_after = value_or(given.stale_tissue_after, options.stale_tissue_after);
   options.corrected_force = given.corrected_force > 0;
   options.grasp_buttons = given.grasp_buttons;
+  options.limit_energy = given.limit_energy != 0;
   return options;
 }
 
@@ -131,10 +132,7 @@ struct palpate_session {
   palpate_session(std::shared_ptr<palpate::c_interface::SharedTissue> shared, const palpate::ToolList& list,
                   const palpate_session_options& options)
       : claim(std::move(shared)), tools(list.size()), states(list.size()) {
-    const palpate::ServoOptions made = palpate::c_interface::servo_options_from(options);
-    palpate::HapticServo::Energy energy;
-    if (options.limit_energy != 0) energy.emplace(palpate::EnergyLimits::from(made.device));
-    servo = claim.tissue().make_servo(list, made, energy);
+    servo = claim.tissue().make_servo(list, palpate::c_interface::servo_options_from(options));
     skin = claim.tissue().make_skin();
     normals.resize(3 * static_cast<std::size_t>(skin->point_count()));
     if (options.manual_work == 0) worker = claim.tissue().make_worker();
