@@ -1,6 +1,7 @@
 // Random presses, slides, pinches and grasps with the composition that scenes should use.
 #pragma once
 
+#include <palpate/element/tet4.hpp>
 #include <palpate/element/wrappers.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/linear_elastic.hpp>
