@@ -2,11 +2,15 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/detail/blade_cut.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/thread_exchange.hpp>
+#include <palpate/haptic/detail/hand.hpp>
+#include <palpate/haptic/detail/tool_recovery.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
@@ -20,10 +24,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 namespace detail {
 
-class BladeCut;
 class ForceErrorMeasurement;
-class ServoBlade;
-class ToolInput;
 
 }  // namespace detail
 
@@ -51,7 +52,6 @@ class HapticServo {
   requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
-  ~HapticServo();
   HapticServo(const HapticServo&) = delete;
   HapticServo& operator=(const HapticServo&) = delete;
 
@@ -77,13 +77,13 @@ class HapticServo {
   /// Penetration of the deepest point that had no row in the last tick, relative to the deepest push: roughly the part
   /// of the force that is missing since contacts are more than ServoOptions::contact allows (degraded_model). For the
   /// tick's own thread.
-  double missing_depth() const noexcept;
+  double missing_depth() const noexcept { return problem_.missing_depth(); }
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
-  int contact_rows() const noexcept;
+  int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
   /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
   /// tick's own thread.
   std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
@@ -95,10 +95,10 @@ class HapticServo {
   /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
   /// of contacts left out; of the corrected force, where it is corrected. Its bound is infinite where
   /// nothing was measured. For the tick's own thread.
-  ForceError force_error(std::size_t tool = 0) const noexcept { return errors_[tool]; }
+  ForceError force_error(std::size_t tool = 0) const noexcept { return hands_[tool].error; }
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
   /// tick's own thread.
-  double indentation(std::size_t tool = 0) const noexcept;
+  double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, hands_[tool].tool); }
   /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
   Vector3 contact_torque(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
@@ -107,14 +107,16 @@ class HapticServo {
   /// thread.
   Matrix3 proxy_rotation(std::size_t tool = 0) const noexcept;
   /// Whether a tool grasps a point of the surface. For the tick's own thread.
-  bool is_holding(std::size_t tool = 0) const noexcept;
+  bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
   /// State of a blade; null for another tool. For the tick's own thread.
-  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept;
+  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept {
+    return hands_[tool].blade ? &hands_[tool].blade->cut() : nullptr;
+  }
   /// Limits of a tool's gate.
-  const ForceLimits& limits(std::size_t tool = 0) const noexcept { return gates_[tool].limits(); }
+  const ForceLimits& limits(std::size_t tool = 0) const noexcept { return hands_[tool].gate.limits(); }
   /// Energy tank of a tool; null without one. For the tick's own thread.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept {
-    return energies_.empty() ? nullptr : &energies_[tool];
+    return hands_[tool].tank ? &*hands_[tool].tank : nullptr;
   }
 
   /// Newest snapshot, for one reader thread; never waits. Valid until the next call.
@@ -129,19 +131,15 @@ class HapticServo {
   HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options, const Energy& energy);
 
   void check_units();
-  void add_blade(const BladeTool& blade, std::size_t tool, const ServoOptions& options);
+  std::unique_ptr<detail::ServoBlade> make_blade(const BladeTool& blade, std::size_t tool,
+                                                 const ServoOptions& options) const;
+  detail::Hand make_hand(std::size_t i, const ServoOptions& options, const Energy& energy);
   void note_updates() noexcept;
-  void take(std::size_t i, const ToolState& state) noexcept;
-  void take_blade(detail::ServoBlade& blade, std::size_t i, const ToolState& state) noexcept;
-  bool is_lost(std::size_t i) noexcept;
-  bool is_free(const Vector3& position, double depth) noexcept;
-  bool sweep_lost_tools() noexcept;
-  bool is_on_the_way(std::size_t i) const noexcept;
-  bool place_lost_tools() noexcept;
-  void recover(std::size_t i) noexcept;
-  bool has_lost_contact(std::size_t i) noexcept;
-  double estimate_error(std::size_t i) noexcept;
-  void pass(std::size_t i, Status shared) noexcept;
+  void take(detail::Hand& hand, const ToolState& state) noexcept;
+  void take_blade(detail::ServoBlade& blade, detail::ToolInput& input, const ToolState& state) noexcept;
+  double estimate_error(detail::Hand& hand) noexcept;
+  void pass(detail::Hand& hand, Status shared) noexcept;
+  Status status_of(detail::Hand& hand) noexcept;
   void publish() noexcept;
 
   TissueView tissue_;
@@ -149,17 +147,12 @@ class HapticServo {
   std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
-  std::unique_ptr<ContactProblem> problem_;  // behind a pointer: its headers take long to compile
+  ContactProblem problem_;
   CoarseFacetReport coarse_facets_;
-  std::vector<detail::ToolInput> inputs_;
-  std::vector<std::unique_ptr<detail::ServoBlade>> blades_;  // null for tools that are no blades
-  std::vector<ForceGate> gates_;
-  std::vector<EnergyTank> energies_;  // one per tool, or none at all
   std::vector<GatedForce> forces_;
-  std::vector<ForceError> errors_;
+  std::vector<detail::Hand> hands_;  // refer to contact tools and forces
   double stale_tissue_after_;
   bool corrected_force_;
-  std::vector<char> lost_contact_;  // of each tool, in the last tick
   std::uint64_t updates_ = 0;
   bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
