@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
@@ -46,7 +47,7 @@ class ToolInput {
   /// The tool has lost the surface: it is placed again in the next tick.
   void lose() noexcept;
   /// Whether that happened in this tick.
-  bool is_lost() const noexcept { return readable_ && !known_; }
+  bool is_lost() const noexcept { return readable() && known_ != Known::position; }
   void reset() noexcept;
 
   const Vector3& position() const noexcept { return position_; }  ///< last valid one, model frame [m]
@@ -54,8 +55,8 @@ class ToolInput {
   double time() const noexcept { return time_; }                  ///< of the last valid one [s]
   /// Time of the tick on the same clock [s]; where it is not known, time().
   double now() const noexcept { return std::isfinite(now_) ? now_ : time_; }
-  bool readable() const noexcept { return readable_; }
-  bool restarted() const noexcept { return restarted_; }  ///< forces begin from zero
+  bool readable() const noexcept { return reading_ != Reading::unreadable; }
+  bool restarted() const noexcept { return reading_ == Reading::restarted; }  ///< forces begin from zero
   bool rotates() const noexcept { return rotates_; }
   /// Whether the tool is inside the body because it entered through an untouchable surface.
   bool is_passing() const noexcept { return passing_; }
@@ -73,9 +74,18 @@ class ToolInput {
   void set_clearance(std::uint64_t revision, const Vector3& position, double distance) noexcept;
 
  private:
+  /// What is known of the tool: its position, or where its proxy was when the readings were lost.
+  enum class Known { nothing, proxy, position };
+  /// The state of this tick. It continues the last one also where that is used in place of an invalid pose.
+  enum class Reading { unreadable, continued, restarted };
+
   /// No workspace extends beyond 1e6 m, and squares of such values cannot overflow.
   static bool is_sound(const Vector3& position, const Quaternion<double>& orientation, double time) noexcept;
 
+  struct Outside {
+    Vector3 position;
+    Matrix3 rotation;
+  };
   struct Pose {
     Vector3 position;  // model frame
     Quaternion<double> orientation;
@@ -99,18 +109,17 @@ class ToolInput {
   int number_;
   Vector3 position_ = Vector3::Zero(), rotation_ = Vector3::Zero();
   double time_ = 0.0, now_ = std::numeric_limits<double>::quiet_NaN();
-  double news_ = 0.0;       // time of the last update of the tissue
-  bool known_ = false;      // position_ is valid
-  bool has_proxy_ = false;  // while not known_: the proxy is that of the last reading
+  double news_ = 0.0;  // time of the last update of the tissue
+  Known known_ = Known::nothing;
+  Reading reading_ = Reading::unreadable;
+  bool was_readable_ = false;  // in the tick before
   bool passing_ = false, beside_surface_ = false;
   std::uint64_t clear_revision_ = 0;
   Vector3 clear_position_ = Vector3::Zero();
-  double clearance_ = 0.0;    // [m]; not positive: none
-  bool was_outside_ = false;  // outside_ is known
-  Vector3 outside_ = Vector3::Zero();
-  Matrix3 outside_rotation_ = Matrix3::Identity();
-  bool needs_press_ = false;  // after a loss or jump: no grasp until the button is released and pressed again
-  bool readable_ = false, was_readable_ = false, restarted_ = false, rotates_;
+  double clearance_ = 0.0;            // [m]; not positive: none
+  std::optional<Outside> outside_{};  // the last one, of the proxy
+  bool needs_press_ = false;          // after a loss or jump: no grasp until the button is released and pressed again
+  bool rotates_;
   std::uint32_t grasp_buttons_;
   Status status_;
 };

@@ -28,25 +28,22 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
 
 PALPATE_INLINE void ToolInput::take_freely(const ToolState& state, const Eigen::Isometry3d& pose,
                                            double longest) noexcept {
+  if (!state.valid) known_ = Known::nothing;
   Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
   if (!accept(state, pose, taken)) return;
-  const bool jumped = known_ && (taken.position - position_).norm() > longest;
+  const bool jumped = known_ == Known::position && (taken.position - position_).norm() > longest;
   if (jumped) status_.set(StatusFlag::reacquired);
-  restarted_ = jumped || !known_;
+  if (jumped || known_ != Known::position) reading_ = Reading::restarted;
   position_ = taken.position;
-  known_ = true;
+  known_ = Known::position;
 }
 
 PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isometry3d& pose, Pose& taken) noexcept {
   status_ = {};
-  readable_ = state.valid;
-  restarted_ = false;
+  reading_ = state.valid ? Reading::continued : Reading::unreadable;
   now_ = state.now;
   rotation_.setZero();
-  if (!state.valid) {
-    known_ = false;
-    return false;
-  }
+  if (!state.valid) return false;
   taken.position = inverse(pose) * state.position;
   if (rotates_) {
     const auto& q = state.orientation;
@@ -55,7 +52,7 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
   if (!is_sound(taken.position, taken.orientation, state.time)) {
     // The last valid pose is kept; its old time stamp makes the gate fade the force.
     status_.set(StatusFlag::non_finite_input);
-    readable_ = known_;
+    if (known_ != Known::position) reading_ = Reading::unreadable;
     return false;
   }
   time_ = state.time;
@@ -63,8 +60,8 @@ PALPATE_INLINE bool ToolInput::accept(const ToolState& state, const Eigen::Isome
 }
 
 PALPATE_INLINE void ToolInput::note_tissue(bool has_news) noexcept {
-  const bool was_readable = std::exchange(was_readable_, readable_);
-  const bool returned = readable_ && !was_readable;  // the tool's time stood still meanwhile
+  const bool was_readable = std::exchange(was_readable_, readable());
+  const bool returned = readable() && !was_readable;  // the tool's time stood still meanwhile
   if (has_news || returned || !(news_ <= time_)) news_ = time_;
 }
 
@@ -76,31 +73,30 @@ PALPATE_INLINE void ToolInput::set_clearance(std::uint64_t revision, const Vecto
 }
 
 PALPATE_INLINE void ToolInput::note_outside(std::span<const Contact> contacts, const ContactTool& tool) noexcept {
-  was_outside_ = tool.active;
-  if (!tool.active) return;
-  outside_ = off_surface(contacts, tool);
-  outside_rotation_ = tool.rotation;
+  outside_.reset();
+  if (tool.active) outside_ = {off_surface(contacts, tool), tool.rotation};
 }
 
 PALPATE_INLINE bool ToolInput::sweep_from_outside(const ContactSurface& surface, ContactTool& tool) noexcept {
-  if (!was_outside_) return false;
-  tool.rotation = outside_rotation_;
-  sweep(tool, surface, outside_, position_);
-  was_outside_ = false;
+  if (!outside_) return false;
+  tool.rotation = outside_->rotation;
+  sweep(tool, surface, outside_->position, position_);
+  outside_.reset();
   return true;
 }
 
 PALPATE_INLINE void ToolInput::lose() noexcept {
-  known_ = has_proxy_ = was_outside_ = false;
+  known_ = Known::nothing;
+  outside_.reset();
   needs_press_ = true;
   status_.set(StatusFlag::reacquired);
 }
 
 /// Keeps the proxy for the next reading, moved out by the depth of the dent, which springs back without the force.
 PALPATE_INLINE void ToolInput::lose_reading(std::span<const Contact> contacts, ContactTool& tool) noexcept {
-  if (known_) {
+  if (known_ == Known::position) {
     tool.proxy = off_surface(contacts, tool);
-    has_proxy_ = true;
+    known_ = Known::proxy;
   }
   needs_press_ = true;
   tool.lift();
@@ -120,7 +116,7 @@ PALPATE_INLINE bool ToolInput::is_sound(const Vector3& position, const Quaternio
 PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, const Eigen::Isometry3d& pose,
                                       ContactTool& tool) noexcept {
   const Matrix3 rotation = palpate::rotation_of(pose).transpose() * rotation_matrix(orientation);
-  if (known_) {
+  if (known_ == Known::position) {
     rotation_ = palpate::rotation_of(pose) * rotation_vector(rotation * tool.target_rotation.transpose());
     tool.end_path = tool.core_path(rotation - tool.target_rotation);
   }
@@ -130,15 +126,15 @@ PALPATE_INLINE void ToolInput::rotate(const Quaternion<double>& orientation, con
 PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurface& surface,
                                       std::span<const Contact> contacts, ContactTool& tool) noexcept {
   const Vector3 motion = position - position_;
-  const bool leaps = known_ && motion.norm() + tool.end_path > 2.0 * tool.radius;
-  restarted_ = !known_ || leaps;
-  if (leaps || (!known_ && has_proxy_)) {
+  const bool leaps = known_ == Known::position && motion.norm() + tool.end_path > 2.0 * tool.radius;
+  if (leaps || known_ != Known::position) reading_ = Reading::restarted;
+  if (leaps || known_ == Known::proxy) {
     sweep(tool, surface, leaps ? off_surface(contacts, tool) : tool.proxy, position);
     tool.end_path = 0.0;
     tool.grasping = false;
     needs_press_ = true;
     status_.set(StatusFlag::reacquired);
-  } else if (!known_) {
+  } else if (known_ == Known::nothing) {
     place_beside(tool, surface, position);
   } else {
     tool.motion = motion;
@@ -147,7 +143,8 @@ PALPATE_INLINE void ToolInput::follow(const Vector3& position, const ContactSurf
       sweep(tool, surface, tool.proxy, position);
   }
   position_ = tool.target = position;
-  known_ = tool.active = true;
+  known_ = Known::position;
+  tool.active = true;
 }
 
 PALPATE_INLINE Vector3 ToolInput::off_surface(std::span<const Contact> contacts,
