@@ -74,7 +74,7 @@ class Touching {
     status_ |= force.status;
     return force.force();
   }
-  int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
+  int pressing() const noexcept { return static_cast<int>(servo_.tick_view().contacts().size()); }
 
   /// Keeps the tool fixed and measures, relative to the depth, the larger of two errors: the distance of the points
   /// that press from the sphere, and the difference between the displacement of their vertices by the stored compliance
@@ -113,8 +113,8 @@ class Touching {
     VectorX u(3 * model_->mesh().node_count());
     model_->displacement_with(forces, u);
     double worst = pressing() > 0 ? 0.0 : infinity;
-    for (const ToolContact& c : servo_.contacts()) {
-      worst = std::max(worst, std::abs((servo_.proxy() - c.point).norm() - radius_));
+    for (const ToolContact& c : servo_.tick_view().contacts()) {
+      worst = std::max(worst, std::abs((servo_.tick_view().proxy() - c.point).norm() - radius_));
       for (const int vertex : c.vertices) {
         Vector3 difference = u.segment<3>(3 * Index{model_->touchable_nodes()[static_cast<std::size_t>(vertex)]});
         for (const VertexForce& f : forces)

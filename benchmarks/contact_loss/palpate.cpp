@@ -26,13 +26,15 @@ Counts run_palpate(const Scene& scene) {
     state.position = scene.path[i];
     state.time += tick;
     const Status status = servo.tick(state).status;
-    const bool finite = servo.proxy().allFinite() && servo.contact_force().allFinite();
-    if (!judge.note(finite ? servo.contact_force() : Vector3::Constant(infinity), !servo.contacts().empty())) break;
+    const bool finite = servo.tick_view().proxy().allFinite() && servo.tick_view().contact_force().allFinite();
+    if (!judge.note(finite ? servo.tick_view().contact_force() : Vector3::Constant(infinity),
+                    !servo.tick_view().contacts().empty()))
+      break;
     if (scene.is_judged(i) && (status.has(StatusFlag::degraded_model) || status.has(StatusFlag::solver_not_converged)))
       judge.flag();
     if (!judge.ends_hold()) continue;
     model.displacement_with(servo.read_snapshot().vertex_forces(), u);
-    judge.end_hold(u, servo.proxy());
+    judge.end_hold(u, servo.tick_view().proxy());
   }
   return judge.counts();
 }

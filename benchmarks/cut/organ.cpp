@@ -99,7 +99,7 @@ Session run(const Mesh<Tet4>& mesh, const std::function<void(Tissue&, int)>& ord
     last = f.force();
     if (trace != nullptr)
       std::fprintf(trace, "%s,%d,%.6f,%.6f,%.6f,%.6f,%llu,%u\n", name, i, f.force().norm(),
-                   servo.contact_force().norm(), 1e6 * s.ticks.back(), 1e3 * s.late.back(),
+                   servo.tick_view().contact_force().norm(), 1e6 * s.ticks.back(), 1e3 * s.late.back(),
                    static_cast<unsigned long long>(revision), f.status.bits());
   }
   stop = true;

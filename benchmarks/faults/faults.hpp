@@ -116,12 +116,12 @@ inline Outcome run(const Fault& fault, double tissue_step) {
     out.peak = std::max(out.peak, force.force().norm());
     if (!unreadable && !was_zeroed) out.step = std::max(out.step, (force.force() - before).norm());
     if (!unreadable && !was_zeroed && k > 0)
-      out.raw_step = std::max(out.raw_step, (servo.contact_force() - raw_before).norm());
+      out.raw_step = std::max(out.raw_step, (servo.tick_view().contact_force() - raw_before).norm());
     was_zeroed = unreadable;
     before = force.force();
-    raw_before = servo.contact_force();
+    raw_before = servo.tick_view().contact_force();
     out.given = std::max(out.given, hand.given() - damped);
-    out.tank = std::min(out.tank, servo.energy()->level());
+    out.tank = std::min(out.tank, servo.tick_view().energy()->level());
     out.stale += force.status.has(StatusFlag::stale);
     out.missed += force.status.has(StatusFlag::deadline_missed);
     out.disconnected += force.status.has(StatusFlag::disconnected);

@@ -35,7 +35,7 @@ inline std::array<Press, depths.size()> press(HapticServo& servo, const TestPlac
     state.time += 1e-3;
     state.position = place.point + (reach - depth) * place.outward;
     status = servo.tick(state).status;
-    return servo.contact_force().dot(place.outward);
+    return servo.tick_view().contact_force().dot(place.outward);
   };
   double depth = -0.1 * radius;
   force_at(depth);
@@ -47,7 +47,7 @@ inline std::array<Press, depths.size()> press(HapticServo& servo, const TestPlac
       before = force;
       force = force_at(goal);
     }
-    const ForceError error = servo.force_error();
+    const ForceError error = servo.tick_view().force_error();
     presses[d] = {force, error.parts.mesh + error.parts.merged, is_doubted(status)};
   }
   return presses;

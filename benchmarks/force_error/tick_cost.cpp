@@ -37,7 +37,7 @@ class Slide {
       state_.time += 1e-3;
       state_.position = {0.05 + 0.02 * std::cos(angle), 0.05 + 0.02 * std::sin(angle), 0.08 + radius_ - depth_};
       servo_.tick(state_);
-      contacts_ += static_cast<long>(servo_.contacts().size());
+      contacts_ += static_cast<long>(servo_.tick_view().contacts().size());
     }
     const std::chrono::duration<double, std::nano> passed = std::chrono::steady_clock::now() - start;
     if (1e-3 * count_ > 6.3) nanoseconds_.push_back(passed.count() / ticks);

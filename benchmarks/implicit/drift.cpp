@@ -203,13 +203,13 @@ void measure_static_hold(bench::RowFile& rows, int ticks) {
   const int settle = 10000;
   for (int k = 0; k < settle; ++k) tick(k);
   const VectorX settled = tissue.motion().displacement();
-  const Vector3 force = servo.contact_force();
+  const Vector3 force = servo.tick_view().contact_force();
   double error = 0.0, force_error = 0.0;
   for (int k = settle; k < settle + ticks; ++k) {
     tick(k);
     if (k % 1000 != 0) continue;
     error = std::max(error, (tissue.motion().displacement() - settled).norm() / settled.norm());
-    force_error = std::max(force_error, (servo.contact_force() - force).norm() / force.norm());
+    force_error = std::max(force_error, (servo.tick_view().contact_force() - force).norm() / force.norm());
   }
   rows.add({.target = "m",
             .what = "a fixed sphere in a moving tissue over " + std::to_string(ticks) +

@@ -75,9 +75,9 @@ struct Session {
     state.time += 1e-3;
     state.position = centre;
     status = servo.tick({&state, 1}).front().status;
-    return servo.contact_force();
+    return servo.tick_view().contact_force();
   }
-  int pressing() const { return static_cast<int>(servo.contacts().size()); }
+  int pressing() const { return static_cast<int>(servo.tick_view().contacts().size()); }
   bool has(palpate::StatusFlag flag) const { return status.has(flag); }
 
  private:

@@ -80,7 +80,7 @@ Row press(const Truth& truth, double cells_per_a) {
   row.over_hertz = row.force / (4.0 / 3.0 * modulus * std::sqrt(sphere_radius) * std::pow(depth, 1.5));
   row.dofs = session->model.report().free_dofs;
   row.seconds = session->model.report().total_seconds();
-  row.candidates = session->servo.contact_rows();
+  row.candidates = session->servo.tick_view().contact_rows();
   row.pressing = session->pressing();
   return row;
 }

@@ -54,8 +54,8 @@ class Palpation {
     state_.time = 1e-3 * static_cast<double>(++count_);
     return servo_.tick({&state_, 1}).front().force();
   }
-  palpate::Vector3 contact_force() const noexcept { return servo_.contact_force(); }
-  int pressing() const noexcept { return static_cast<int>(servo_.contacts().size()); }
+  palpate::Vector3 contact_force() const noexcept { return servo_.tick_view().contact_force(); }
+  int pressing() const noexcept { return static_cast<int>(servo_.tick_view().contacts().size()); }
 
   /// Keeps the tool fixed, applies the forces to the whole body and measures the distance of the pressed points from
   /// the sphere, relative to the depth. Does not use the stored compliance.
@@ -64,13 +64,13 @@ class Palpation {
     palpate::VectorX u(3 * model_.mesh().node_count());
     model_.displacement_with(servo_.read_snapshot().vertex_forces(), u);
     double worst = pressing() > 0 ? 0.0 : palpate::infinity;
-    for (const palpate::ToolContact& c : servo_.contacts()) {
+    for (const palpate::ToolContact& c : servo_.tick_view().contacts()) {
       palpate::Vector3 point = palpate::Vector3::Zero();
       for (std::size_t a = 0; a < 3; ++a) {
         const palpate::NodeId node = model_.touchable_nodes()[static_cast<std::size_t>(c.vertices[a])];
         point += c.weights[a] * (model_.rest_position(node) + u.segment<3>(3 * palpate::Index{node}));
       }
-      worst = std::max(worst, std::abs((servo_.proxy() - point).norm() - radius));
+      worst = std::max(worst, std::abs((servo_.tick_view().proxy() - point).norm() - radius));
     }
     return worst / depth_;
   }
@@ -81,7 +81,7 @@ class Palpation {
     state.counters["tets"] = static_cast<double>(r.elements);
     state.counters["kept"] = static_cast<double>(r.touchable_vertices);
     state.counters["contacts"] = pressing();
-    state.counters["points"] = servo_.contact_rows();
+    state.counters["points"] = servo_.tick_view().contact_rows();
     state.counters["setup_ms"] = 1e3 * r.total_seconds();
   }
 

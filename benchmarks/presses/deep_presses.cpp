@@ -80,10 +80,10 @@ void press(Model& model, Shape shape, double friction, testing::Random& random, 
     state.time += 1e-3;
     state.position = place.point + (depth - radius) * place.inward;
     status = servo.tick(state).status;
-    push = -place.inward.dot(servo.contact_force());
+    push = -place.inward.dot(servo.tick_view().contact_force());
     const bool is_lost = status.has(StatusFlag::lost_contact);
     lost = lost || is_lost;
-    const bool pulls = push < -0.5 * servo.contact_force().norm() && push < -0.01 * most;
+    const bool pulls = push < -0.5 * servo.tick_view().contact_force().norm() && push < -0.01 * most;
     wrong = wrong || (!is_lost && pulls);
     silent = silent || (status.ok() && pulls);
     most = std::max(most, push);
@@ -91,7 +91,7 @@ void press(Model& model, Shape shape, double friction, testing::Random& random, 
     if (status.ok() && most > 0.0) fall_silent = std::max(fall_silent, 1.0 - push / most);
   }
   ++counts.runs;
-  counts.swallowed += !status.has(StatusFlag::lost_contact) && servo.contact_force().norm() < 0.01 * most &&
+  counts.swallowed += !status.has(StatusFlag::lost_contact) && servo.tick_view().contact_force().norm() < 0.01 * most &&
                       !is_beside(model, state.position);
   counts.wrong += wrong;
   counts.silent += silent;

@@ -27,7 +27,7 @@ Grasp grasp(Tissue& tissue, double top, Shape shape, double radius, double frict
     state.time += 1e-3;
     state.position = place + (top + height) * Vector3::UnitZ();
     result.unconverged += servo.tick(state).status.has(StatusFlag::solver_not_converged);
-    return servo.contact_force();
+    return servo.tick_view().contact_force();
   };
   const double pressed = 0.75 * radius, lifted = 1.5 * radius;
   Vector3 force = Vector3::Zero();

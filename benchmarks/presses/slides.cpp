@@ -31,7 +31,7 @@ class Sphere {
   }
   Vector3 settle() {
     for (int k = 0; k < 100; ++k) tick();
-    return servo_.contact_force();
+    return servo_.tick_view().contact_force();
   }
 
  private:
@@ -46,7 +46,7 @@ class Sphere {
     state.position = at_;
     state.time = 1e-3 * ++ticks_;
     servo_.tick(state);
-    return servo_.contact_force();
+    return servo_.tick_view().contact_force();
   }
 
   HapticServo servo_;

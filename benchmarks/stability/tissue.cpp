@@ -34,7 +34,7 @@ double handle_stiffness(Block& block, double coupling, const SimulatedOptions& d
       state.time = 1e-3 * ++ticks;
       servo.tick({&state, 1});
     }
-    return servo.contact_force()[2];
+    return servo.tick_view().contact_force()[2];
   };
   double depth = 0.0;
   while (force_at(depth) < pressed && depth < sphere) depth += 1e-5;

@@ -31,9 +31,9 @@ class RenderedTissue {
     ++count_;
     for (const GatedForce& f : servo_.tick(states_)) status_ |= f.status;
     for (std::size_t b = 0; b < forces_.size(); ++b) {
-      forces_[b] = servo_.contact_force(b);
+      forces_[b] = servo_.tick_view().contact_force(b);
       const double size = forces_[b].norm();
-      if (size > 0.0) forces_[b] *= servo_.force_error(b).force / size;
+      if (size > 0.0) forces_[b] *= servo_.tick_view().force_error(b).force / size;
     }
     return forces_;
   }
@@ -126,7 +126,9 @@ class LinearContender : public Contender {
         u_(3 * model_.mesh().node_count()) {}
 
   std::span<const Vector3> tick(std::span<const Vector3> centres) override { return rendered_.tick(centres); }
-  double force_error_bound(std::size_t sphere) const override { return rendered_.servo().force_error(sphere).bound; }
+  double force_error_bound(std::size_t sphere) const override {
+    return rendered_.servo().tick_view().force_error(sphere).bound;
+  }
   VectorX displacement() override {
     model_.displacement_with(rendered_.vertex_forces(), u_);
     return of_given_nodes(u_, model_.node_map(), bench_.scene.mesh.node_count());

@@ -53,7 +53,7 @@ std::vector<double> press_and_wait(Pad& pad) {
     state.time = time;
     state.position = {0.5 * size[0], 0.5 * size[1], size[2] + finger.radius - in};
     servo.tick(state);
-    force.push_back(servo.contact_force().norm());
+    force.push_back(servo.tick_view().contact_force().norm());
   }
   return force;
 }

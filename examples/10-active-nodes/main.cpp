@@ -51,7 +51,7 @@ GraspedPoint grasp_and_move(Tissue& tissue, const Vector3& point, const Vector3&
     servo.tick(state);
   }
   const auto forces = servo.read_snapshot().vertex_forces();
-  return {-servo.contact_force(), {forces.begin(), forces.end()}};
+  return {-servo.tick_view().contact_force(), {forces.begin(), forces.end()}};
 }
 
 bool agree(const char* what, const Vector3& a, const Vector3& b) {

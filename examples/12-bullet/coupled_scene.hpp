@@ -144,7 +144,7 @@ class CoupledScene {
   void push(std::size_t i) {
     const Instrument& b = instruments_[i];
     Hand& hand = hands_[i];
-    const Vector3 force = servo_.contact_force(i), torque = servo_.contact_torque(i);
+    const Vector3 force = servo_.tick_view().contact_force(i), torque = servo_.tick_view().contact_torque(i);
     finite_ = finite_ && force.allFinite() && torque.allFinite();
     const Vector3 path = hand.next - hand.position;
     const Vector3 end = states_[i].position + force / stiffness(i), moved = end - hand.start;

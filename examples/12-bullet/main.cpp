@@ -107,7 +107,8 @@ struct Watch {
       deepest = std::max(deepest, depth / b.radius);
       inside = inside && b.centre.x() > 0.0 && b.centre.x() < size[0] && b.centre.y() > 0.0 && b.centre.y() < size[1];
     }
-    for (std::size_t i = 0; i < scene.size(); ++i) force = std::max(force, scene.servo().contact_force(i).norm());
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      force = std::max(force, scene.servo().tick_view().contact_force(i).norm());
   }
   bool is_sound(const CoupledScene& scene) const { return scene.finite() && inside && deepest < 1.0; }
   void account(double time, const Energy& e) {

@@ -148,12 +148,12 @@ void compare(const char* policy, bool two) {
       const palpate_tool_force& f = forces[tick + i];
       CAPTURE(tick, i);
       REQUIRE(are_same(expected[i].force(), f.force));
-      REQUIRE(are_same(servo.contact_force(i), f.contact_force));
+      REQUIRE(are_same(servo.tick_view().contact_force(i), f.contact_force));
       REQUIRE(expected[i].status.bits() == f.status);
       REQUIRE(expected[i].error.expected == f.error_expected);
       REQUIRE(expected[i].error.bound == f.error_bound);
-      REQUIRE(servo.contact_rows() == f.contacts);
-      if (servo.contact_force(i).norm() > 1e-3) ++pressed;
+      REQUIRE(servo.tick_view().contact_rows() == f.contacts);
+      if (servo.tick_view().contact_force(i).norm() > 1e-3) ++pressed;
     }
   }
   CHECK(pressed > 100);

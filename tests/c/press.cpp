@@ -50,7 +50,7 @@ int main(int count, char** arguments) {
   int tick = 0;
   for (; tick < 1024; ++tick) {
     const Vector3 force = servo.tick(place(tick, 1e-3 * tick)).force();
-    last = servo.contact_force();
+    last = servo.tick_view().contact_force();
     hash = add_to_hash(add_to_hash(hash, force), last);
   }
   const double pressed_us = time_ticks(servo, 1024, tick), free_us = time_ticks(servo, 0, tick);

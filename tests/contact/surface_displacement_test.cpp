@@ -42,7 +42,7 @@ TEST_CASE("a tool that is larger than another one has its own level from its fir
     states[1].position = Vector3(0.015, 0.015, test::pad_height + height);
     CHECK_FALSE(servo.tick(states)[1].status.has(StatusFlag::degraded_model));
   }
-  CHECK(servo.contact_rows() > 0);
+  CHECK(servo.tick_view().contact_rows() > 0);
 }
 
 TEST_CASE("the vertices of a grasped pad follow the tool as one, while other tools press beside it",

@@ -207,9 +207,9 @@ TEST_CASE("a tool that teleports never passes through a plate of 0.2 mm", "[cont
       const GatedForce out = servo.tick({&state, 1})[0];
       if (!out.force().allFinite() || out.force().norm() > 3.3 * (1.0 + 1e-12)) ++wild;
       jumps += out.status.has(StatusFlag::reacquired);
-      pressed += servo.contact_force().norm() > 0.0;
-      lowest = std::min(lowest, servo.proxy()[2]);
-      through += servo.proxy()[2] < 0.0;
+      pressed += servo.tick_view().contact_force().norm() > 0.0;
+      lowest = std::min(lowest, servo.tick_view().proxy()[2]);
+      through += servo.tick_view().proxy()[2] < 0.0;
     }
     INFO(name << ": " << jumps << " jumps, " << pressed << " ticks pressed, lowest middle of the tool " << 1e3 * lowest
               << " mm");
@@ -231,21 +231,21 @@ TEST_CASE("a jump through free space arrives, a jump at a wall stops at the wall
   };
   go({0, 0, 0.03});
   CHECK(go({0.01, 0, 0.01}).status.has(StatusFlag::reacquired));
-  CHECK((servo.proxy() - Vector3(0.01, 0, 0.01)).norm() <= 1e-12);
+  CHECK((servo.tick_view().proxy() - Vector3(0.01, 0, 0.01)).norm() <= 1e-12);
   go({0.01, 0, -0.03});
-  CHECK(servo.proxy()[2] > 0.0);
-  CHECK(servo.contact_force()[2] > 0.0);  // the force points to the side it came from
+  CHECK(servo.tick_view().proxy()[2] > 0.0);
+  CHECK(servo.tick_view().contact_force()[2] > 0.0);  // the force points to the side it came from
   for (int k = 0; k < 60; ++k) go({0.01, 0, -0.03});
   CHECK_THAT(go({0.01, 0, -0.03}).force().norm(), WithinRel(3.3, 1e-6));
   go({0.01, 0, 0.03});  // back: the wall releases it immediately
-  CHECK(servo.contact_force() == Vector3::Zero());
-  CHECK((servo.proxy() - Vector3(0.01, 0, 0.03)).norm() <= 1e-12);
+  CHECK(servo.tick_view().contact_force() == Vector3::Zero());
+  CHECK((servo.tick_view().proxy() - Vector3(0.01, 0, 0.03)).norm() <= 1e-12);
   go({0.2, 0, 0.03});  // around the plate, without contact
   go({0.2, 0, -0.03});
   go({0.0, 0, -0.03});
-  CHECK((servo.proxy() - Vector3(0.0, 0, -0.03)).norm() <= 1e-12);
+  CHECK((servo.tick_view().proxy() - Vector3(0.0, 0, -0.03)).norm() <= 1e-12);
   go({0.0, 0, 0.03});
-  CHECK(servo.proxy()[2] < 0.0);  // now it is stopped on the other side
+  CHECK(servo.tick_view().proxy()[2] < 0.0);  // now it is stopped on the other side
 }
 
 TEST_CASE("torque passes the gate, to a device that renders it", "[contact][torque][haptic]") {
@@ -272,7 +272,7 @@ TEST_CASE("torque passes the gate, to a device that renders it", "[contact][torq
   CHECK(limited == 0);
   CHECK(zero == 400);
   CHECK(most > 0.005);
-  CHECK(six.contact_torque()[1] < 0.0);  // it rotates back
+  CHECK(six.tick_view().contact_torque()[1] < 0.0);  // it rotates back
   state.orientation = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0};
   state.time += 1e-3;
   CHECK(six.tick({&state, 1})[0].status.has(StatusFlag::non_finite_input));
@@ -296,10 +296,10 @@ TEST_CASE("a tool grasps while a grasp button is pressed", "[contact][grasp][hap
   };
   state.position[2] = 4.1e-3;
   hold(4e-3, 1, 50);
-  CHECK_FALSE(servo.is_holding());
+  CHECK_FALSE(servo.tick_view().is_holding());
   hold(4e-3, 3, 1);
-  CHECK(servo.is_holding());
+  CHECK(servo.tick_view().is_holding());
   CHECK_THAT(hold(7e-3, 2, 100).force()[2], WithinRel(-3e-3 / (1e-3 + 1.0 / 500.0), 1e-3));
   CHECK(hold(7e-3, 0, 5).force() == Vector3::Zero());
-  CHECK_FALSE(servo.is_holding());
+  CHECK_FALSE(servo.tick_view().is_holding());
 }

@@ -653,14 +653,17 @@ class Program {
       inner("const Status status = servo.tick(state).status;");
       inner("if (tick % 10 == 0)");
       inner(
-          "  std::cout << tick << ' ' << depth << ' ' << servo.contact_force().transpose() << ' ' << status << '\\n';");
+          "  std::cout << tick << ' ' << depth << ' ' << servo.tick_view().contact_force().transpose() << ' ' << "
+          "status << '\\n';");
       return;
     }
     inner("const auto forces = servo.tick(states);");
     inner("if (tick % 10 != 0) continue;");
     inner("std::cout << tick;");
     inner("for (std::size_t t = 0; t < depth.size(); ++t)");
-    inner("  std::cout << \"  \" << depth[t] << ' ' << servo.contact_force(t).transpose() << ' ' << forces[t].status;");
+    inner(
+        "  std::cout << \"  \" << depth[t] << ' ' << servo.tick_view().contact_force(t).transpose() << ' ' << "
+        "forces[t].status;");
     inner("std::cout << '\\n';");
   }
 

@@ -191,19 +191,19 @@ class Player {
     Vector3 sum = Vector3::Zero();
     for (std::size_t t = 0; t < count; ++t) {
       ToolTick& r = record[t];
-      const Vector3 force = servo_->contact_force(t), torque = servo_->contact_torque(t);
+      const Vector3 force = servo_->tick_view().contact_force(t), torque = servo_->tick_view().contact_torque(t);
       const auto original = [&](const Vector3& x) {
         return Vector3(manner_.change.linear.transpose() * (pose_.inverse() * x - manner_.change.shift) / s);
       };
       r.position = original(states[t].position);
-      r.proxy = original(servo_->proxy(t));
+      r.proxy = original(servo_->tick_view().proxy(t));
       r.force = back(force) / (s * s);
       // A torque is a pseudovector: a reflection reverses it.
       r.torque = manner_.change.linear.determinant() * back(torque) / (s * s * s);
       r.rendered = back(forces[t].force()) / (s * s);
       r.status = forces[t].status;
-      r.bound = servo_->force_error(t).bound / (s * s);
-      r.of_points = servo_->force_error(t).parts.merged / (s * s);
+      r.bound = servo_->tick_view().force_error(t).bound / (s * s);
+      r.of_points = servo_->tick_view().force_error(t).parts.merged / (s * s);
       r.depth = depth_of(scene_, t, tick);
       r.finite =
           force.allFinite() && torque.allFinite() && forces[t].force().allFinite() && forces[t].torque().allFinite();
@@ -248,7 +248,8 @@ class Player {
       if (scene_.tools[t].kind != "sphere") continue;
       const double radius = manner_.change.scale * scene_.tools[t].radius;
       for (std::size_t v = 0; v < surface.size(); ++v)
-        if (facets[v] <= radius) deepest = std::max(deepest, radius - (surface[v] - servo_->proxy(t)).norm());
+        if (facets[v] <= radius)
+          deepest = std::max(deepest, radius - (surface[v] - servo_->tick_view().proxy(t)).norm());
     }
     return deepest;
   }

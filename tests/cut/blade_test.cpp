@@ -52,7 +52,7 @@ TEST_CASE("a blade opens the tissue that it is pushed into, with a rendered forc
   tissue.begin_tick();
   CHECK(most > 0.5);
   CHECK(most <= 40.0 * 0.05 + 1e-9);
-  CHECK(servo.blade()->area() > 0.0);
+  CHECK(servo.tick_view().blade()->area() > 0.0);
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(tissue.contact_surface().vertex_count() > vertices);
 }
@@ -77,7 +77,7 @@ TEST_CASE("a blade in its own slit along a plane of the mesh has the force of it
         s.time = 1e-3 * i;
         servo.tick(s);
         const double stretch = 40.0 * 0.04 / 500.0;  // of the coupling when the edge begins to cut
-        if (z < 0.0299 - stretch) wrong += std::abs(servo.contact_force().norm() - 40.0 * 0.04) > 0.01;
+        if (z < 0.0299 - stretch) wrong += std::abs(servo.tick_view().contact_force().norm() - 40.0 * 0.04) > 0.01;
         if (i % 8 == 0) tissue.process_cuts();
       }
       INFO("at " << x << " m, rotated by " << angle);
@@ -119,8 +119,8 @@ TEST_CASE("one tool touches the tissue while another cuts it", "[cut][blade]") {
   while (tissue.process_cuts()) {}
   CHECK(report.devices[0].peak_force > 0.03);
   CHECK(report.devices[1].peak_force > 0.5);
-  CHECK(session.servo().blade(0) == nullptr);
-  CHECK(session.servo().blade(1)->area() > 0.0);
+  CHECK(session.servo().tick_view().blade(0) == nullptr);
+  CHECK(session.servo().tick_view().blade(1)->area() > 0.0);
   CHECK(tissue.cut_report().cuts > 0);
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
     for (int i = 0; i < ticks; ++i, ++tick) {
       s.position += step;
       s.time = 1e-3 * tick;
-      const Vector3 now = (servo.tick(s), servo.contact_force());
+      const Vector3 now = (servo.tick(s), servo.tick_view().contact_force());
       hand_work -= 0.5 * (force + now).dot(step);
       force = now;
       most = std::max(most, force.norm());
@@ -148,7 +148,7 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   };
   s.position = {-0.004, 0.03, 0.0201};
   move({0.044, 0.03, 0.0201}, 960);
-  const detail::BladeCut& blade = *servo.blade();
+  const detail::BladeCut& blade = *servo.tick_view().blade();
   const double stretch = threshold / 500.0;  // of the coupling
   CHECK(blade.edge()[0] == Catch::Approx(0.044 - stretch).margin(1e-4));
   CHECK(most == Catch::Approx(threshold));

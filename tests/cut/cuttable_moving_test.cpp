@@ -190,7 +190,7 @@ TEST_CASE("a blade is the only tool on moving tissue", "[cut][moving][blade][ext
   }
   CHECK(tissue.cut_report().cuts > 1);
   CHECK(tissue.contact_surface().vertex_count() > vertices);
-  CHECK(servo.blade()->area() > 1e-4);
+  CHECK(servo.tick_view().blade()->area() > 1e-4);
 }
 
 TEST_CASE("moving tissue survives lack of memory in a cut", "[cut][moving][extreme][E10]") {
@@ -286,7 +286,7 @@ TEST_CASE("a session on moving tissue that can be cut gives bitwise the same run
       state.time = 1e-3 * k;
       state.position = {0.03 + 5e-5 * k, 0.02, 0.04 + 6e-3 - 8e-5 * k};
       servo->tick(state);
-      forces.push_back(servo->contact_force());
+      forces.push_back(servo->tick_view().contact_force());
     }
     return forces;
   };

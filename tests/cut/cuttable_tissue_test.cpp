@@ -220,17 +220,18 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   };
   for (int i = 0; i < 300; ++i) tick(std::min(3e-3, 5e-4 + i * 2e-5));
   before = last.norm();
-  contact_before = servo.contact_force();
+  contact_before = servo.tick_view().contact_force();
   REQUIRE(before > 0.01);
   tissue.cut(slit_at(0.052, 0.012));
   CHECK(tick(3e-3).status.has(StatusFlag::degraded_model));  // not up to date, and reported
-  CHECK(std::abs(servo.contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
+  CHECK(std::abs(servo.tick_view().contact_force().norm() - contact_before.norm()) < 0.02 * contact_before.norm());
   tissue.process_cuts();
   const GatedForce after = tick(3e-3);
   CHECK(!after.status.has(StatusFlag::degraded_model));
-  CHECK(servo.contact_force().norm() > 0.2 * contact_before.norm());  // contact with the surface is not lost
-  constexpr double of_points = 0.01;  // a slit body is softer, but its force is that of other points
-  CHECK(servo.contact_force().norm() < (1.0 + of_points) * contact_before.norm());
+  CHECK(servo.tick_view().contact_force().norm() >
+        0.2 * contact_before.norm());  // contact with the surface is not lost
+  constexpr double of_points = 0.01;   // a slit body is softer, but its force is that of other points
+  CHECK(servo.tick_view().contact_force().norm() < (1.0 + of_points) * contact_before.norm());
   for (int i = 0; i < 100; ++i) tick(3e-3);
   CHECK(last.norm() < (1.0 + of_points) * before);
   CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
@@ -293,7 +294,8 @@ TEST_CASE("reset under a tool and a renderer: no reference to deleted data", "[c
   CHECK(surface.update());
   CHECK(surface.point_count() > points);
   const auto touches_copies = [&] {
-    return std::ranges::any_of(servo.contacts(), [&](const ToolContact& c) { return c.vertices[0] >= vertices; });
+    return std::ranges::any_of(servo.tick_view().contacts(),
+                               [&](const ToolContact& c) { return c.vertices[0] >= vertices; });
   };
   REQUIRE(touches_copies());  // vertices created by the cut
 
@@ -303,7 +305,7 @@ TEST_CASE("reset under a tool and a renderer: no reference to deleted data", "[c
   press(200);
   CHECK(tissue.contact_surface().vertex_count() == vertices);
   CHECK_FALSE(touches_copies());
-  CHECK(servo.contact_force().norm() > 0.02);
+  CHECK(servo.tick_view().contact_force().norm() > 0.02);
   CHECK(surface.update());
   CHECK(surface.point_count() == points);
   CHECK(tissue.cut_report().cuts == 0);
@@ -502,7 +504,7 @@ TEST_CASE("a small sphere keeps its dent when the tissue is cut far from it", "[
   double time = 0.0;
   forces_along(servo, {start, pressed}, time);
   for (int i = 0; i < 100; ++i) servo.tick(at(pressed, time += 1e-3));
-  const Vector3 before = servo.contact_force();
+  const Vector3 before = servo.tick_view().contact_force();
   REQUIRE(before.norm() > 1e-4);
   tissue.cut(slit_at(0.0876, 0.03));
   while (tissue.process_cuts()) {}
@@ -513,13 +515,13 @@ TEST_CASE("a small sphere keeps its dent when the tissue is cut far from it", "[
     servo.tick({&s, 1});
     const auto calls = scope.allocations() + scope.frees();
     CHECK(calls == 0);
-    REQUIRE((servo.contact_force() - before).norm() < 0.02 * before.norm());
+    REQUIRE((servo.tick_view().contact_force() - before).norm() < 0.02 * before.norm());
   }
   // A new press on the cut tissue has the same dent.
   servo.reset();
   forces_along(servo, {start, pressed}, time);
   for (int i = 0; i < 100; ++i) servo.tick(at(pressed, time += 1e-3));
-  CHECK((servo.contact_force() - before).norm() < 0.02 * before.norm());
+  CHECK((servo.tick_view().contact_force() - before).norm() < 0.02 * before.norm());
 }
 
 TEST_CASE("after every cut the surface knows the material behind each of its triangles", "[cut][coarse]") {

@@ -88,7 +88,7 @@ class TortureSession {
       std::vector<ToolState> states;
       for (const Tool& t : tools_) states.push_back(t.state);
       servo_->tick(states);
-      const Vector3 force = servo_->contact_force();
+      const Vector3 force = servo_->tick_view().contact_force();
       ++counts.ticks;
       counts.pressed += force.norm() > 0.0;
       // The hand moves under the force of this tick until the next: exact for a constant force and no damping.
@@ -240,14 +240,14 @@ class TortureSession {
       const double own = states[t].position.allFinite() ? (states[t].position - tool.last_position).norm() : 0.0;
       tool.pace += (own - tool.pace) / 30.0;
       motion += own + tool.pace;
-      pressing += servo_->contact_force(t).norm() > 0.0;
+      pressing += servo_->tick_view().contact_force(t).norm() > 0.0;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) check_tick(t, forces[t], motion, pressing, counts);
   }
 
   void check_tick(std::size_t t, const GatedForce& rendered, double motion, int pressing, TortureCounts& counts) {
     Tool& tool = tools_[t];
-    const Vector3 force = servo_->contact_force(t);
+    const Vector3 force = servo_->tick_view().contact_force(t);
     tool.status = rendered.status;
     if (!force.allFinite() || !rendered.force().allFinite() || rendered.force().norm() > peak_force_ * (1.0 + 1e-12))
       note(counts.non_finite, "non-finite", t);
@@ -292,7 +292,7 @@ class TortureSession {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
       const Tool& tool = tools_[t];
       if (tool.status.has(StatusFlag::coarse_contact) || tool.force.norm() == 0.0) continue;
-      const auto closest = deformed.closest(in_model(servo_->proxy(t)));
+      const auto closest = deformed.closest(in_model(servo_->tick_view().proxy(t)));
       if (!(closest.distance < -1e-9 * thickness_)) continue;
       // A sphere smaller than the facets is in a dent that they do not show. It is pushed out of it.
       const Vector3 push = model_->to_world().linear().transpose() * tool.force;
@@ -334,8 +334,8 @@ class TortureSession {
         "%.0f, "
         "force %.4f N, before %.4f N, rows %d, depth %.3f mm\n",
         static_cast<unsigned long long>(seed_), name_.c_str(), 1e3 * edge_, 1e3 * thickness_, tools_.size(), friction_,
-        what, t, 1e3 * tool.radius, 1e3 * tool.state.time, servo_->contact_force(t).norm(), tool.force.norm(),
-        servo_->contact_rows(), -1e3 * height(tool.state.position));
+        what, t, 1e3 * tool.radius, 1e3 * tool.state.time, servo_->tick_view().contact_force(t).norm(),
+        tool.force.norm(), servo_->tick_view().contact_rows(), -1e3 * height(tool.state.position));
   }
 
   testing::Random random_;

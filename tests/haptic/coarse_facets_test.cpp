@@ -67,12 +67,12 @@ struct Tip {
     state.time += 1e-3;
     state.position = Vector3(x, y, radius - depth);
     status = servo.tick(state).status;
-    return servo.contact_force();
+    return servo.tick_view().contact_force();
   }
   /// From 0.1 radii above in `ticks` equal steps.
   Vector3 press(double x, double y, double depth, int ticks = 60) {
     for (int i = 0; i <= ticks; ++i) tick(x, y, (depth + 0.1 * radius) * i / ticks - 0.1 * radius);
-    return servo.contact_force();
+    return servo.tick_view().contact_force();
   }
 };
 
@@ -99,7 +99,7 @@ std::vector<double> refined(double radius, double poisson_ratio, const std::vect
     for (int i = 1; i <= 40; ++i) tip.tick(0.0, 0.0, before + (depth - before) * i / 40.0);
     CHECK_FALSE(tip.status.has(StatusFlag::degraded_model));
     CHECK_FALSE(tip.status.has(StatusFlag::coarse_contact));
-    forces.push_back(4.0 * tip.servo.contact_force()[2]);
+    forces.push_back(4.0 * tip.servo.tick_view().contact_force()[2]);
     before = depth;
   }
   return forces;
@@ -129,7 +129,7 @@ TEST_CASE("a sphere of a twelfth of a facet has the force of a refined mesh", "[
       CHECK_FALSE((i > 0 && tip.status.has(StatusFlag::coarse_contact)));
       CHECK(force.head<2>().norm() <= (i == 0 ? 0.2 : 0.02) * force[2]);
       // Rigid coupling: the tool is where the device is, in the dent.
-      CHECK((tip.servo.proxy() - tip.state.position).norm() <= 1e-6 * radius);
+      CHECK((tip.servo.tick_view().proxy() - tip.state.position).norm() <= 1e-6 * radius);
     }
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("columns computed in a thread give the same final force as columns com
     reference.press(2e-3, x);
     REQUIRE(settle(session));
     reference.hold(50);
-    const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
+    const Vector3 f = session.servo.tick_view().contact_force(), g = reference.servo.tick_view().contact_force();
     CHECK((f - g).norm() <= 1e-3 * g.norm());
   }
 }
@@ -64,7 +64,7 @@ TEST_CASE("a tick without a flag has the force of complete columns, also right a
       reference.tick();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the thread completes what this tick asked for
       late += flagged ? 1 : 0;
-      const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
+      const Vector3 f = session.servo.tick_view().contact_force(), g = reference.servo.tick_view().contact_force();
       INFO("x " << x << ", tick " << tick << ", " << f.transpose() << " instead of " << g.transpose());
       CHECK((flagged || (f - g).norm() <= 0.02 * g.norm()));
     }
@@ -121,7 +121,7 @@ TEST_CASE("by default a tick of a whole surface does not wait for its columns", 
   ServoSession reference(reference_pad);
   reference.press(2e-3);
   reference.hold(50);
-  const Vector3 f = session.servo.contact_force(), g = reference.servo.contact_force();
+  const Vector3 f = session.servo.tick_view().contact_force(), g = reference.servo.tick_view().contact_force();
   CHECK((f - g).norm() <= 2e-2 * g.norm());  // on the way there, another number of points may have been chosen
 }
 
@@ -135,7 +135,8 @@ TEST_CASE("a column that is not available yet is flagged, and the force stays fi
   reference.tick(above);
   const bool flagged = session.tick(pressed).status.has(StatusFlag::degraded_model);
   reference.tick(pressed);
-  const double f = session.servo.contact_force().norm(), g = reference.servo.contact_force().norm();
+  const double f = session.servo.tick_view().contact_force().norm(),
+               g = reference.servo.tick_view().contact_force().norm();
   CHECK(std::isfinite(f));
   CHECK(f <= 5.0 * g);
   if (!flagged) CHECK(std::abs(f - g) <= 1e-2 * g);  // the thread finished before the tick

@@ -76,18 +76,20 @@ TEST_CASE("rotating model and convex tools together rotates forces and torques",
       plain.tick(a);
       other.tick(b);
       const Matrix3 to = pose.linear();
-      worst = std::max(worst, (to * plain.contact_force() - other.contact_force()).norm());
-      worst_torque = std::max(worst_torque, (to * plain.contact_torque() - other.contact_torque()).norm());
-      worst_rotation = std::max(worst_rotation, (to * plain.proxy_rotation() - other.proxy_rotation()).norm());
-      largest = std::max(largest, plain.contact_force().norm());
-      largest_torque = std::max(largest_torque, plain.contact_torque().norm());
+      worst = std::max(worst, (to * plain.tick_view().contact_force() - other.tick_view().contact_force()).norm());
+      worst_torque =
+          std::max(worst_torque, (to * plain.tick_view().contact_torque() - other.tick_view().contact_torque()).norm());
+      worst_rotation = std::max(worst_rotation,
+                                (to * plain.tick_view().proxy_rotation() - other.tick_view().proxy_rotation()).norm());
+      largest = std::max(largest, plain.tick_view().contact_force().norm());
+      largest_torque = std::max(largest_torque, plain.tick_view().contact_torque().norm());
     }
     CHECK(largest > 0.05);
     CHECK(largest_torque > 1e-5);
     CHECK(worst <= 1e-6 * largest);
     CHECK(worst_torque <= 1e-6 * largest * 0.01);
     CHECK(worst_rotation <= 1e-6);
-    CHECK((other.read_snapshot().rotations[0] - other.proxy_rotation()).norm() == 0.0);
+    CHECK((other.read_snapshot().rotations[0] - other.tick_view().proxy_rotation()).norm() == 0.0);
   }
 }
 
@@ -104,18 +106,19 @@ TEST_CASE("the forces of a convex tool on the tissue and on the tool are in equi
     state.position = {0.015 + 5e-6 * std::max(0, k - 200), 0.015, pad_height + 4e-3 - 1e-5 * std::min(k, 200)};
     orient(state, rotation_by({0.1, 0.05 * std::sin(0.02 * k), 0.3}));
     servo.tick(state);
-    Vector3 sum = servo.contact_force(), moment = servo.contact_torque(), by_contacts = Vector3::Zero();
+    Vector3 sum = servo.tick_view().contact_force(), moment = servo.tick_view().contact_torque(),
+            by_contacts = Vector3::Zero();
     for (const VertexForce& f : servo.read_snapshot().vertex_forces()) sum += f.force.in_model_axes();
-    for (const ToolContact& c : servo.contacts()) {
+    for (const ToolContact& c : servo.tick_view().contacts()) {
       const Vector3 total = c.force * c.normal + c.friction;
       by_contacts += total;
-      moment -= Vector3(c.point - servo.proxy()).cross(total);
+      moment -= Vector3(c.point - servo.tick_view().proxy()).cross(total);
     }
-    worst = std::max({worst, sum.norm(), (by_contacts - servo.contact_force()).norm()});
+    worst = std::max({worst, sum.norm(), (by_contacts - servo.tick_view().contact_force()).norm()});
     moments.push_back(moment.norm());
   }
-  const double force = servo.contact_force().norm();
-  CHECK(servo.contact_force()[2] > 0.05);
+  const double force = servo.tick_view().contact_force().norm();
+  CHECK(servo.tick_view().contact_force()[2] > 0.05);
   CHECK(worst <= 1e-9 * force);
   // The arms are those of the last linearisation: micrometres from the contact points, more in a tick in which points
   // begin or cease to press.
@@ -177,7 +180,7 @@ TEST_CASE("a convex tool that lost the surface is placed again", "[haptic][servo
   CHECK(reacquired == 0);
   go({0.0, 0, -0.02}, 60);
   CHECK(reacquired > 0);
-  CHECK(servo.contact_force().z() > 0.0);
+  CHECK(servo.tick_view().contact_force().z() > 0.0);
 }
 
 TEST_CASE("ticks with convex tools do not allocate, and are the same after a reset",

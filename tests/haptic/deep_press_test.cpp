@@ -62,7 +62,7 @@ DeepPress press(const Mesh<E>& mesh, const Material& material,
     const Status status = servo.tick(std::array{state})[0].status;
     if (k > 100) result.status |= status;
     result.flagged += k > 50 && status.has(StatusFlag::coarse_contact);
-    const double force = servo.contact_force()[2];
+    const double force = servo.tick_view().contact_force()[2];
     most = std::max(most, force);
     result.least = std::min(result.least, force);
     if (depth > 0.1 * radius) result.largest_fall = std::max(result.largest_fall, 1.0 - force / most);
@@ -117,7 +117,7 @@ Rest rest_after(const Drag& drag) {
     const Status status = servo.tick(std::array{state})[0].status;
     if (k < 1700) continue;
     rest.flagged += status.has(StatusFlag::solver_not_converged);
-    rest.force = servo.contact_force();
+    rest.force = servo.tick_view().contact_force();
     least = std::min(least, rest.force.norm());
     most = std::max(most, rest.force.norm());
   }

@@ -55,7 +55,7 @@ Faults play(HapticServo& servo, const Move& move, double thickness) {
     state.time += 1e-3;
     state.position = position;
     servo.tick(state);
-    const double force = move.side * servo.contact_force()[2];
+    const double force = move.side * servo.tick_view().contact_force()[2];
     const double height = move.side * (position[2] - (move.side > 0.0 ? thickness : 0.0));
     faults.wrong_side += force < 0.0;
     faults.no_force += height < 0.95 * small_tip && !(force > 0.0);

@@ -28,7 +28,7 @@ FineTipPress press_fine_tip(Pad& pad, double radius, double depth, double x, dou
     const double part = std::min(1.0, i / 300.0);
     state.position = Vector3(x, y, pad_height + radius + (1.0 - part) * 1e-3 - part * depth);
     const Status status = servo.tick(state).status;
-    const double force = servo.contact_force().norm();
+    const double force = servo.tick_view().contact_force().norm();
     if (i > 0 && status.has(StatusFlag::reacquired)) ++result.reacquired;
     touched = touched || force > 0.0;
     if (touched && force == 0.0) ++result.lost;

@@ -48,7 +48,7 @@ Change hold(test::Pad& pad, double friction, testing::Random& random) {
     if (t < 200) s.position[2] -= (depth + 1e-4) / 200.0;
     if (t >= 200 && t < 400) s.position += step * Vector3(std::cos(angle), std::sin(angle), 0.0);
     const Status status = servo.tick(s).status;
-    const Vector3 force = servo.contact_force();
+    const Vector3 force = servo.tick_view().contact_force();
     if (t >= 600) {
       const double own = (force - before).norm() / force.norm();
       change.mean += 0.01 * own;

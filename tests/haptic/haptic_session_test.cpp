@@ -82,9 +82,9 @@ TEST_CASE("a session takes limits, stiffness and rate from the device", "[haptic
   CHECK(gate.continuous_force == 1.1);
   CHECK(gate.period == 1.0 / 500.0);
   // The coupling has the stiffness of the device: proxy minus device times stiffness is the force.
-  const Vector3 device = press(0.015, 4e-3)(1.0), force = session.servo().contact_force();
+  const Vector3 device = press(0.015, 4e-3)(1.0), force = session.servo().tick_view().contact_force();
   CHECK(force.norm() > 0.1);
-  CHECK((800.0 * (session.servo().proxy() - device) - force).norm() < 1e-6 * force.norm());
+  CHECK((800.0 * (session.servo().tick_view().proxy() - device) - force).norm() < 1e-6 * force.norm());
 }
 
 namespace {
@@ -173,8 +173,9 @@ TEST_CASE("devices with different tools in one session: each has its own limits 
   CHECK(servo.limits(1).peak_torque == 0.1);
   const std::array stiffness{300.0, 2000.0}, x{0.009, 0.021};
   for (std::size_t i : {0u, 1u}) {
-    const Vector3 stretched = servo.proxy(i) - press(x[i], 5e-3)(1.0);
-    CHECK((stiffness[i] * stretched - servo.contact_force(i)).norm() < 1e-6 * servo.contact_force(i).norm());
+    const Vector3 stretched = servo.tick_view().proxy(i) - press(x[i], 5e-3)(1.0);
+    CHECK((stiffness[i] * stretched - servo.tick_view().contact_force(i)).norm() <
+          1e-6 * servo.tick_view().contact_force(i).norm());
   }
 }
 
@@ -184,10 +185,10 @@ TEST_CASE("a slower device reduces the rate of a session and the coupling stiffn
   HapticSession session(std::tie(fast, slow), whole_pad(), {sphere, sphere});
   CHECK(session.rate() == 250.0);
   session.run(simulated(1.0));
-  const Vector3 stretched = session.servo().proxy(1) - press(0.021, 3e-3)(249.0 / 250.0);
-  CHECK((500.0 * stretched - session.servo().contact_force(1)).norm() < 1e-6);
-  const Vector3 softer = session.servo().proxy(0) - press(0.009, 3e-3)(249.0 / 1000.0);
-  CHECK((125.0 * softer - session.servo().contact_force(0)).norm() < 1e-6);  // a quarter: stable at 250 Hz
+  const Vector3 stretched = session.servo().tick_view().proxy(1) - press(0.021, 3e-3)(249.0 / 250.0);
+  CHECK((500.0 * stretched - session.servo().tick_view().contact_force(1)).norm() < 1e-6);
+  const Vector3 softer = session.servo().tick_view().proxy(0) - press(0.009, 3e-3)(249.0 / 1000.0);
+  CHECK((125.0 * softer - session.servo().tick_view().contact_force(0)).norm() < 1e-6);  // a quarter: stable at 250 Hz
 }
 
 TEST_CASE("a session refuses what its device does not allow, with value and threshold", "[haptic][session]") {
@@ -260,16 +261,16 @@ TEST_CASE("a servo without a session has per-tool limits, too", "[haptic][servo]
   options.devices.resize(1);  // for all tools
   const HapticServo equal(whole_pad(), {sphere, sphere}, options);
   for (std::size_t i : {0u, 1u}) CHECK(equal.limits(i).peak_force == 1.0);
-  CHECK(equal.energy() == nullptr);
+  CHECK(equal.tick_view().energy() == nullptr);
 }
 
 TEST_CASE("a servo without a session limits the energy of each tool as its device allows", "[haptic][servo]") {
   const DeviceLimits weak{.peak_force = 1.0}, strong{.peak_force = 2.0, .stiffness = 1000.0};
   const HapticServo servo(whole_pad(), {sphere, sphere}, {.limit_energy = true, .devices = {weak, strong}});
-  CHECK(servo.energy(0)->limits().allowance == EnergyLimits::from(weak).allowance);
-  CHECK(servo.energy(1)->limits().allowance == EnergyLimits::from(strong).allowance);
+  CHECK(servo.tick_view().energy(0)->limits().allowance == EnergyLimits::from(weak).allowance);
+  CHECK(servo.tick_view().energy(1)->limits().allowance == EnergyLimits::from(strong).allowance);
   const HapticServo own(whole_pad(), {sphere, sphere}, {.limit_energy = true}, EnergyTank(EnergyLimits{.delay = 3}));
-  for (std::size_t i : {0u, 1u}) CHECK(own.energy(i)->limits().delay == 3);
+  for (std::size_t i : {0u, 1u}) CHECK(own.tick_view().energy(i)->limits().delay == 3);
 }
 
 TEST_CASE("start, read, stop, start again: the second run begins as the first did", "[haptic][session][timing]") {
@@ -424,8 +425,8 @@ TEST_CASE("simulated hands: different devices come to rest on the tissue", "[hap
   right.push({0.0, 0.0, -0.8});
   HapticSession session(std::tie(left, right), whole_pad(), {sphere, sphere}, {.limit_energy = true});
   const LoopReport report = session.run(simulated(2.0));
-  CHECK(session.servo().energy(0)->limits().allowance == EnergyLimits::from(left.limits()).allowance);
-  CHECK(session.servo().energy(1)->limits().allowance == EnergyLimits::from(right.limits()).allowance);
+  CHECK(session.servo().tick_view().energy(0)->limits().allowance == EnergyLimits::from(left.limits()).allowance);
+  CHECK(session.servo().tick_view().energy(1)->limits().allowance == EnergyLimits::from(right.limits()).allowance);
   CHECK(report.status[StatusFlag::non_finite_force] == 0);
   CHECK(report.status[StatusFlag::energy_injected] == 0);
   for (const SimulatedDevice* device : {&left, &right}) CHECK(device->velocity().norm() < 5e-3);
@@ -465,7 +466,8 @@ TEST_CASE("snapshots, statuses and reports can be printed; a snapshot converts t
   for (const char* part : {"t = 0.499 s", "contacts; tool 0: force (", "; tool 1: force (", " N, proxy (",
                            "device 0: peak", "device 1: peak", "status: Ramping"})
     CHECK_THAT(out.str(), test::contains(part));
-  for (std::size_t i : {0u, 1u}) CHECK((snapshot.contact_force(i) - session.servo().contact_force(i)).norm() < 1e-9);
+  for (std::size_t i : {0u, 1u})
+    CHECK((snapshot.contact_force(i) - session.servo().tick_view().contact_force(i)).norm() < 1e-9);
   const auto sum = [](std::span<const VertexForce> forces) {
     Vector3 all = Vector3::Zero();
     for (const VertexForce& f : forces) all += f.force.in_model_axes();

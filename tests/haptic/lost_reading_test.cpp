@@ -82,11 +82,11 @@ TEST_CASE("a grasp begins with a press of the button, not with a reading that re
   s.move(above, on, 100);
   s.state.buttons = 1;
   s.tick(on);
-  REQUIRE(s.servo.is_holding());
+  REQUIRE(s.servo.tick_view().is_holding());
   s.tick(on, false);
   s.tick(on);
   for (int i = 0; i < 50; ++i) s.tick(on);
-  CHECK_FALSE(s.servo.is_holding());
+  CHECK_FALSE(s.servo.tick_view().is_holding());
   s.move(on, above, 100);
   CHECK(s.force.force().norm() == 0.0);
   s.move(above, on, 100);
@@ -94,7 +94,7 @@ TEST_CASE("a grasp begins with a press of the button, not with a reading that re
   s.tick(on);
   s.state.buttons = 1;
   s.tick(on);
-  CHECK(s.servo.is_holding());
+  CHECK(s.servo.tick_view().is_holding());
 }
 
 TEST_CASE("an invalid reading after the surface was lost lifts the tool", "[haptic][servo]") {
@@ -141,8 +141,9 @@ TEST_CASE("where the tissue keeps a part of the force of a lost tool for a tick,
     }
     states[2].valid = k < 172;
     const Status status = servo.tick(states)[0].status;
-    const double force = servo.contact_force(0).norm();
-    Vector3 sum = servo.contact_force(0) + servo.contact_force(1) + servo.contact_force(2);
+    const double force = servo.tick_view().contact_force(0).norm();
+    Vector3 sum =
+        servo.tick_view().contact_force(0) + servo.tick_view().contact_force(1) + servo.tick_view().contact_force(2);
     const ServoSnapshot& snapshot = servo.read_snapshot();
     for (std::size_t i = 0; i < snapshot.force_count; ++i) sum += snapshot.forces[i].force.in_model_axes();
     if (sum.norm() <= 0.01 * force) continue;
@@ -164,7 +165,7 @@ TEST_CASE("a tool that cannot be read leaves no force on the tissue", "[haptic][
     state.position = Vector3(0.007, 0.007, 0.020 - 6e-3 * in);
     state.valid = k < 86;
     servo.tick(state);
-    if (k == 85) REQUIRE(servo.contact_force().norm() > 0.05);
+    if (k == 85) REQUIRE(servo.tick_view().contact_force().norm() > 0.05);
   }
   const ServoSnapshot& snapshot = servo.read_snapshot();
   for (std::size_t i = 0; i < snapshot.force_count; ++i) CHECK(snapshot.forces[i].force.in_model_axes().norm() == 0.0);

@@ -123,8 +123,8 @@ TEST_CASE("a flat tool on a touched support has one torque, whatever the roundin
       s[0].time = s[1].time = 1e-3 * k;
       servo.tick(s);
     }
-    CHECK(servo.contact_force()[2] > 0.4);
-    return Vector3(servo.contact_torque() / (servo.contact_force()[2] * half_length));
+    CHECK(servo.tick_view().contact_force()[2] > 0.4);
+    return Vector3(servo.tick_view().contact_torque() / (servo.tick_view().contact_force()[2] * half_length));
   };
   const Vector3 first = torque_at(Vector3::Zero());
   if (is_plate || !may_glide) CHECK(first.norm() < 0.1);  // a capsule beside the lines of the mesh glides a little

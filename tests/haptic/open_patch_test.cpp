@@ -30,7 +30,7 @@ double force_at(double height, std::uint64_t seed) {
     const Vector3 from = session.states[0].position;
     for (int i = 1; i <= 50; ++i) {
       const GatedForce& f = session.tick(from + (to - from) * i / 50);
-      largest = std::max({largest, f.force().norm(), session.servo.contact_force().norm()});
+      largest = std::max({largest, f.force().norm(), session.servo.tick_view().contact_force().norm()});
       CHECK_FALSE(f.status.has(StatusFlag::reacquired));
     }
   }
@@ -54,7 +54,7 @@ TEST_CASE("a tool that enters where the body cannot be touched passes through", 
     double largest = 0.0;
     for (int i = 1; i <= ticks; ++i) {
       session.tick(left + (right - left) * i / ticks);
-      largest = std::max(largest, session.servo.contact_force().norm());
+      largest = std::max(largest, session.servo.tick_view().contact_force().norm());
     }
     CAPTURE(height, speed);
     CHECK(largest == 0.0);
@@ -97,7 +97,7 @@ TEST_CASE("a group has the inside of its members, also after one has moved", "[c
       state.time = 1e-3 * i;
       state.position = from + (to - from) * i / 300;
       servo.tick(state);
-      largest = std::max(largest, servo.contact_force().norm());
+      largest = std::max(largest, servo.tick_view().contact_force().norm());
     }
     return largest;
   };
@@ -141,7 +141,7 @@ TEST_CASE("where a tool over the rim of a patch lacks force, every tick is flagg
           state.position = Vector3(x, 0.0151, pad_height + radius + 1e-4 - (1e-4 + depth) * i / 100.0);
           status = servo.tick(state).status;
         }
-        return std::pair{servo.contact_force()[2], status};
+        return std::pair{servo.tick_view().contact_force()[2], status};
       };
       const auto [truth, clean] = press(whole);
       const auto [force, status] = press(patch);

@@ -64,7 +64,7 @@ struct DeepPress {
     tick(0.0);
   }
   /// Push outward [N].
-  double push() const { return -inward.dot(servo.contact_force()); }
+  double push() const { return -inward.dot(servo.tick_view().contact_force()); }
   double tick(double to, const Vector3& aside = Vector3::Zero()) {
     depth = to;
     state.time += 1e-3;
@@ -145,7 +145,7 @@ TEST_CASE("a sphere on a floor that touches a wall is pushed by both as by each 
     state.time = time;
     state.position = position;
     servo.tick(state);
-    return Vector3(servo.contact_force());
+    return Vector3(servo.tick_view().contact_force());
   };
   double largest = 0.0;
   for (int i = 0; i <= 200; ++i) {  // down, then to the wall
@@ -187,7 +187,7 @@ TEST_CASE("a tool that entered where the body cannot be touched is flagged until
       sphere.state.position = middle + (from + (to - from) * i / 100.0) * Vector3(0.0, 0.0, 1.0);
       sphere.last = sphere.servo.tick(sphere.state).status;
       const double distance = surface.distance_of_body(deep_organ().to_world().inverse() * sphere.state.position);
-      if (sphere.servo.contact_force().norm() > 0.0 || sphere.last.has(StatusFlag::reacquired)) continue;
+      if (sphere.servo.tick_view().contact_force().norm() > 0.0 || sphere.last.has(StatusFlag::reacquired)) continue;
       inside += distance < 0.0;
       if (distance < 0.0 || distance > DeepPress::radius)  // between them it overlaps the body
         CHECK(sphere.last.has(StatusFlag::lost_contact) == (distance < 0.0));
@@ -238,7 +238,7 @@ TEST_CASE("a capsule pressed with its side by two and a half radii is pushed bac
     state.time += 1e-3;
     state.position = Vector3(0.0512, 0.0487, size.z() + radius) + 0.01 * i * radius * inward;
     const Status status = servo.tick(state).status;
-    const double push = -inward.dot(servo.contact_force());
+    const double push = -inward.dot(servo.tick_view().contact_force());
     most = std::max(most, push);
     if (!(push >= 0.85 * most) || status.has(StatusFlag::lost_contact))
       FAIL("at " << 0.01 * i << " radii " << push << " N after " << most << ", " << status);
@@ -256,7 +256,7 @@ TEST_CASE("a reset after a tool was inside gives the same ticks again", "[haptic
       sphere.state.time = 1e-3 * static_cast<double>(i);
       sphere.state.position = sphere.start + 1e-3 * static_cast<double>(i) * sphere.inward;
       const Status status = sphere.servo.tick(sphere.state).status;
-      const Vector3 force = sphere.servo.contact_force();
+      const Vector3 force = sphere.servo.tick_view().contact_force();
       if (compare) {
         CHECK(test::same(force, forces[i]));
         CHECK(status == statuses[i]);

@@ -29,7 +29,7 @@ class Sphere {
       state.position = at_;
       state.time = 1e-3 * ++ticks_;
       servo_.tick(state);
-      force_ = servo_.contact_force();
+      force_ = servo_.tick_view().contact_force();
       work_ -= 0.5 * (before + force_).dot(step);
     }
   }

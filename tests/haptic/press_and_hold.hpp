@@ -30,11 +30,11 @@ inline std::pair<Vector3, Status> press_and_hold(MovingTissue& tissue, const Vec
     s.time = 1e-3 * k;
     s.position = top + Vector3(0.0, 0.0, radius - std::min(0.004, 0.02 * s.time));
     const GatedForce force = servo.tick(s);
-    REQUIRE(servo.contact_force().allFinite());
+    REQUIRE(servo.tick_view().contact_force().allFinite());
     REQUIRE(force.force().allFinite());
     if (k >= ticks - 100) status |= force.status;
   }
-  return {servo.contact_force(), status};
+  return {servo.tick_view().contact_force(), status};
 }
 
 }  // namespace test

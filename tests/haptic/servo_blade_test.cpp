@@ -75,7 +75,7 @@ TEST_CASE("a blade's force is toughness times edge length, and its sweeps are co
   const Vector3 origin(0.2, -0.1, 0.3);
   tissue.pose = Eigen::Translation3d(origin) * Eigen::AngleAxisd(0.4, Vector3::UnitZ());
   HapticServo servo(tissue, blade);
-  CHECK(servo.blade()->area() == 0.0);
+  CHECK(servo.tick_view().blade()->area() == 0.0);
   GatedForce f;
   for (int k = 0; k < 400; ++k) {
     ToolState s = at(height(k), k);
@@ -87,8 +87,9 @@ TEST_CASE("a blade's force is toughness times edge length, and its sweeps are co
   }
   CHECK(f.status.ok());
   CHECK((f.force() - Vector3(0, 0, 1.0)).norm() < 1e-9);
-  CHECK((servo.contact_force() - f.force()).norm() < 1e-12);
-  CHECK((servo.proxy() - origin - Vector3(0, 0, height(399) + 1.0 / 500.0)).norm() < 1e-9);  // coupled by 500 N/m
+  CHECK((servo.tick_view().contact_force() - f.force()).norm() < 1e-12);
+  CHECK((servo.tick_view().proxy() - origin - Vector3(0, 0, height(399) + 1.0 / 500.0)).norm() <
+        1e-9);  // coupled by 500 N/m
   REQUIRE(tissue.sweeps.size() > 10);
   for (std::size_t k = 1; k < tissue.sweeps.size(); ++k) {
     CHECK((tissue.sweeps[k].a0 == tissue.sweeps[k - 1].a1));
@@ -107,7 +108,7 @@ TEST_CASE("the force of a blade that is in tissue in part is toughness times tha
       servo.tick(s);
     }
     INFO("middle of the edge " << 1e3 * outside << " mm outside");
-    CHECK_THAT(servo.contact_force()[2], Catch::Matchers::WithinAbs(100.0 * (5e-3 - outside), 2e-3));
+    CHECK_THAT(servo.tick_view().contact_force()[2], Catch::Matchers::WithinAbs(100.0 * (5e-3 - outside), 2e-3));
   }
 }
 
@@ -122,8 +123,8 @@ TEST_CASE("a snapshot contains a blade as a cutting contact and can be printed",
   const ToolContact& c = snapshot.tool_contacts()[0];
   CHECK(c.cutting);
   CHECK(c.tool == 1);
-  CHECK((c.point == servo.proxy(1)));
-  CHECK((snapshot.contact_force(1) - servo.contact_force(1)).norm() < 1e-12);
+  CHECK((c.point == servo.tick_view().proxy(1)));
+  CHECK((snapshot.contact_force(1) - servo.tick_view().contact_force(1)).norm() < 1e-12);
   CHECK(snapshot.contact_force(1).z() > 0.9);
   CHECK(snapshot.contact_force(0).norm() == 0.0);
   CHECK(snapshot.vertex_forces().empty());
@@ -157,17 +158,17 @@ TEST_CASE("a blade's gate: ramp, lost reads, NaN, jumps, stale input, peak force
   CHECK(f.force().norm() == 0.0);
   f = hold(-9e-3, 1);
   CHECK(f.status.has(StatusFlag::ramping));
-  CHECK(servo.contact_force().norm() == 0.0);  // it restarts where it is
+  CHECK(servo.tick_view().contact_force().norm() == 0.0);  // it restarts where it is
   hold(-0.013, 60);
-  CHECK(servo.contact_force().norm() > 1.0);
+  CHECK(servo.tick_view().contact_force().norm() > 1.0);
   f = servo.tick(at(std::numeric_limits<double>::quiet_NaN(), tick++));
   CHECK(f.status.has(StatusFlag::non_finite_input));
-  CHECK(servo.contact_force().norm() > 1.0);  // last valid pose kept
-  f = hold(-0.03, 1);                         // farther than the edge is long
+  CHECK(servo.tick_view().contact_force().norm() > 1.0);  // last valid pose kept
+  f = hold(-0.03, 1);                                     // farther than the edge is long
   CHECK(f.status.has(StatusFlag::reacquired));
-  CHECK(servo.contact_force().norm() == 0.0);
+  CHECK(servo.tick_view().contact_force().norm() == 0.0);
   hold(-0.034, 60);
-  CHECK(servo.contact_force().norm() > 1.0);
+  CHECK(servo.tick_view().contact_force().norm() > 1.0);
   for (int k = 0; k < 60; ++k) f = servo.tick(at(-0.034, tick));  // the stamp stands still
   CHECK(f.status.has(StatusFlag::stale));
   CHECK(f.force().norm() == 0.0);
@@ -200,10 +201,10 @@ TEST_CASE("a blade after reset gives bitwise the same run", "[haptic][blade]") {
     return forces;
   };
   const auto first = play();
-  CHECK(servo.energy() != nullptr);
+  CHECK(servo.tick_view().energy() != nullptr);
   const std::size_t sweeps = tissue.sweeps.size();
   servo.reset();
-  CHECK(servo.blade()->area() == 0.0);
+  CHECK(servo.tick_view().blade()->area() == 0.0);
   CHECK(servo.read_snapshot().contact_count == 0);
   const auto second = play();
   double most = 0.0;
@@ -241,6 +242,6 @@ TEST_CASE("a session with a blade: coupling and limits are its device's", "[hapt
   const LoopReport report = session.run({.duration = 0.6, .paced = false});
   CHECK(report.peak_force <= 0.6 * (1.0 + 1e-12));
   CHECK(report.status[StatusFlag::saturated] > 0);
-  CHECK((session.servo().proxy() - Vector3(0, 0, -0.02 + 1.0 / 300.0)).norm() < 1e-6);
+  CHECK((session.servo().tick_view().proxy() - Vector3(0, 0, -0.02 + 1.0 / 300.0)).norm() < 1e-6);
   CHECK(std::abs(session.snapshot().contact_force().z() - 1.0) < 1e-3);
 }

@@ -353,7 +353,7 @@ TEST_CASE("1e5 ticks of random contact sets: slew limit kept, contacts bounded",
     }
     session.tick();
     for (std::size_t t : {0u, 1u}) watch[t].look(session.forces[t]);
-    most = std::max(most, session.servo.contacts().size());
+    most = std::max(most, session.servo.tick_view().contacts().size());
     if (session.forces[0].status.has(StatusFlag::slew_limited)) ++limited;
     if (i / 1000 % 4 != 0 && session.forces[0].status.has(StatusFlag::solver_not_converged)) ++not_converged;
   }
@@ -471,7 +471,7 @@ TEST_CASE("a saturated force keeps its direction", "[haptic][servo][extreme][D7]
     const GatedForce& f = session.tick(session.states[0].position + Vector3(1e-5, 2e-6, 0));
     if (!f.status.has(StatusFlag::saturated)) continue;
     ++saturated;
-    worst = std::min(worst, f.force().normalized().dot(session.servo.contact_force().normalized()));
+    worst = std::min(worst, f.force().normalized().dot(session.servo.tick_view().contact_force().normalized()));
     if (std::abs(f.force().norm() - 0.5) > 1e-9) FAIL("saturated at " << f.force().norm());
   }
   CHECK(saturated > 900);

@@ -90,7 +90,7 @@ std::vector<std::uint64_t> press_and_slide(HapticServo& servo, MovingTissue& tis
     state.time = t;
     state.position = Vector3(0.012 + 2e-5 * tick, 0.014, test::pad_height + 2.5e-3 - 2e-3 * std::sin(15.0 * t));
     servo.tick(state);
-    for (int c = 0; c < 3; ++c) bits.push_back(std::bit_cast<std::uint64_t>(servo.contact_force()[c]));
+    for (int c = 0; c < 3; ++c) bits.push_back(std::bit_cast<std::uint64_t>(servo.tick_view().contact_force()[c]));
   }
   return bits;
 }
@@ -205,5 +205,5 @@ TEST_CASE("a reset reports to the tissue that nothing presses any more", "[hapti
   CHECK(servo.read_snapshot().tool_contacts().empty());
   CHECK(tissue.calls == 51);
   CHECK(tissue.pressing == Vector3::Zero());
-  CHECK(servo.contacts().empty());
+  CHECK(servo.tick_view().contacts().empty());
 }

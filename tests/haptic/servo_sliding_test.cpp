@@ -39,7 +39,7 @@ Slide slide(int n, double radius, double depth) {
     state.time += 1e-3;
     state.position = p;
     if (servo.tick({&state, 1})[0].status.has(StatusFlag::degraded_model)) result.degraded = true;
-    return servo.contact_force();
+    return servo.tick_view().contact_force();
   };
   for (int i = 0; i <= 200; ++i) tick(start - Vector3(0, 0, depth * i / 200.0));
   const Vector3 step(1e-5 * std::cos(0.22), 1e-5 * std::sin(0.22), 0);
@@ -85,7 +85,7 @@ std::vector<Vector3> forces_on_copy(double radius, const Copy& copy) {
     const double depth = 0.2 * radius * std::min(1.0, i / 100.0), u = 2e-5 * std::max(0, i - 100);
     state.position = copy(Vector3(0.0161 + u, 0.0173 + 0.37 * u, 0.02 + radius - depth));
     servo.tick(state);
-    forces.push_back(copy.rotation.transpose() * servo.contact_force() / (copy.scale * copy.scale));
+    forces.push_back(copy.rotation.transpose() * servo.tick_view().contact_force() / (copy.scale * copy.scale));
   }
   return forces;
 }
@@ -110,7 +110,7 @@ Steadiness slide_slowly(Model& model, double radius, double depth) {
     const double u = 1e-6 * std::max(0, i) - 3e-3;
     state.position = Vector3(0.02 + u, 0.0203 + 0.37 * u, 0.02 + radius - depth * std::min(1.0, (i + 500) / 400.0));
     const bool is = servo.tick(state).status.has(StatusFlag::coarse_contact);
-    const double force = servo.contact_force().norm();
+    const double force = servo.tick_view().contact_force().norm();
     if (i > 0) {
       result.jump = std::max(result.jump, std::abs(force - before));
       result.flag_changes += is != was;

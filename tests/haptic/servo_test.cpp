@@ -27,8 +27,8 @@ using test::sphere_radius;
 /// Of the sphere to its contact points.
 double smallest_gap(const HapticServo& servo) {
   double smallest = infinity;
-  for (const ToolContact& c : servo.contacts())
-    smallest = std::min(smallest, (servo.proxy() - c.point).norm() - sphere_radius);
+  for (const ToolContact& c : servo.tick_view().contacts())
+    smallest = std::min(smallest, (servo.tick_view().proxy() - c.point).norm() - sphere_radius);
   return smallest;
 }
 
@@ -75,7 +75,8 @@ TEST_CASE("away from the tissue the force is exactly zero", "[haptic][servo]") {
     if (distance < sphere_radius + 1e-6 || next.norm() > 0.1) next = p;
     p = next;
     const GatedForce& f = session.tick(p);
-    if (!test::same(f.force(), Vector3::Zero()) || !test::same(session.servo.contact_force(), Vector3::Zero()))
+    if (!test::same(f.force(), Vector3::Zero()) ||
+        !test::same(session.servo.tick_view().contact_force(), Vector3::Zero()))
       ++not_zero;
     if (!test::same(f.torque(), Vector3::Zero())) ++not_zero;
   }
@@ -105,7 +106,8 @@ TEST_CASE("the force is the coupling spring between device and proxy, and the pr
     for (double x : {0.009, 0.0137, 0.02}) {
       session.press(1.5e-3, x);
       session.hold(30);
-      const Vector3 f = session.servo.contact_force(), stretch = session.servo.proxy() - session.states[0].position;
+      const Vector3 f = session.servo.tick_view().contact_force(),
+                    stretch = session.servo.tick_view().proxy() - session.states[0].position;
       CHECK((f - k * stretch).norm() <= 1e-5 * f.norm());
       CHECK(f[2] <= k * 1.5e-3);
       CHECK(smallest_gap(session.servo) >= -1e-3 * sphere_radius);
@@ -121,7 +123,7 @@ TEST_CASE("near an edge of a body with all of its surface touchable no contact p
     session.press(1.5e-3, x, 0.0151);
     session.hold(30);
     INFO("x " << x);
-    CHECK(session.servo.contact_force()[2] > 0.01);
+    CHECK(session.servo.tick_view().contact_force()[2] > 0.01);
     CHECK(smallest_gap(session.servo) >= -1e-3 * sphere_radius);
   }
 }
@@ -141,7 +143,7 @@ TEST_CASE("two tools: independent when far apart, coupled when near", "[haptic][
       session.tick();
     }
     session.hold(30);
-    return std::pair(session.servo.contact_force(0), session.servo.contact_force(1));
+    return std::pair(session.servo.tick_view().contact_force(0), session.servo.tick_view().contact_force(1));
   };
   const Vector3 beside = left + Vector3(0.009, 0.001, 0);
   const auto far = run(left, right, true, true), left_alone = run(left, right, true, false),
@@ -168,7 +170,8 @@ TEST_CASE("tools in swapped order give swapped forces", "[haptic][servo]") {
       session.tick();
     }
     session.hold(30);
-    force[swapped] = {session.servo.contact_force(swapped), session.servo.contact_force(1 - swapped)};
+    force[swapped] = {session.servo.tick_view().contact_force(swapped),
+                      session.servo.tick_view().contact_force(1 - swapped)};
   }
   for (std::size_t i : {0u, 1u}) CHECK((force[0][i] - force[1][i]).norm() <= 1e-6 * force[0][i].norm());
 }
@@ -188,7 +191,8 @@ TEST_CASE("rotating model and tools together rotates the forces", "[haptic][serv
       const Vector3 p = start + Vector3(1e-5 * std::max(0, i - 200), 0, -1e-5 * std::min(i, 200));
       const Vector3 f = plain.tick(p).force();
       worst = std::max(worst, (pose.linear() * f - other.tick(pose * p).force()).norm());
-      worst_proxy = std::max(worst_proxy, (pose * plain.servo.proxy() - other.servo.proxy()).norm());
+      worst_proxy =
+          std::max(worst_proxy, (pose * plain.servo.tick_view().proxy() - other.servo.tick_view().proxy()).norm());
       largest = std::max(largest, f.norm());
     }
     CHECK(largest > 0.05);
@@ -241,10 +245,10 @@ TEST_CASE("static ticks of any length give the same static force", "[haptic][ser
     session.press(1e-3);
     session.period = period;
     session.hold(100);
-    settled.push_back(session.servo.contact_force());
+    settled.push_back(session.servo.tick_view().contact_force());
     session.hold(1000);
-    CHECK((session.servo.contact_force() - settled.back()).norm() <= 1e-9 * settled.back().norm());
-    if (period == 1e-3) CHECK(test::same(session.forces[0].force(), session.servo.contact_force()));
+    CHECK((session.servo.tick_view().contact_force() - settled.back()).norm() <= 1e-9 * settled.back().norm());
+    if (period == 1e-3) CHECK(test::same(session.forces[0].force(), session.servo.tick_view().contact_force()));
   }
   for (const Vector3& f : settled) CHECK(test::same(f, settled[0]));
 }
@@ -258,7 +262,7 @@ TEST_CASE("another path to the same position ends at the same force", "[haptic][
   around.press(1.4e-3, 0.0111, 0.0142);
   around.move(end, 300);
   around.hold(50);
-  const Vector3 a = straight.servo.contact_force(), b = around.servo.contact_force();
+  const Vector3 a = straight.servo.tick_view().contact_force(), b = around.servo.tick_view().contact_force();
   CHECK((a - b).norm() <= 2e-3 * a.norm());
 }
 
@@ -352,10 +356,10 @@ TEST_CASE("the snapshot contains the forces of the tick", "[haptic][servo]") {
   CHECK(snapshot.time == session.states[0].time);
   Vector3 sum = Vector3::Zero();
   for (const VertexForce& f : snapshot.vertex_forces()) sum += f.force.in_world(pad.to_world());
-  CHECK((sum + session.servo.contact_force()).norm() <= 1e-12);
+  CHECK((sum + session.servo.tick_view().contact_force()).norm() <= 1e-12);
   VectorX u = VectorX::Zero(3 * pad.mesh().node_count());
   CHECK(pad.displacement_with(snapshot.vertex_forces(), u).converged);
-  const auto x = test::deformed_surface(pad, spread(session.servo.contacts(), pad.to_world()));
+  const auto x = test::deformed_surface(pad, spread(session.servo.tick_view().contacts(), pad.to_world()));
   double worst = 0.0;
   for (std::size_t v = 0; v < x.size(); ++v)
     worst = std::max(
@@ -375,11 +379,11 @@ TEST_CASE("contacts of a rotated model are in the world frame, on the vertices o
   ServoSession session(pad);
   for (int i = 0; i < 250; ++i)
     session.tick(pose * Vector3(0.0137, 0.0159, pad_height + sphere_radius + 5e-4 - 1e-5 * std::min(i, 200)));
-  const std::span<const ToolContact> contacts = session.servo.contacts();
+  const std::span<const ToolContact> contacts = session.servo.tick_view().contacts();
   const ServoSnapshot& snapshot = session.servo.read_snapshot();
   REQUIRE(!contacts.empty());
   CHECK(contacts.data() == snapshot.tool_contacts().data());  // while no tick follows
-  CHECK(session.servo.contact_rows() >= static_cast<int>(contacts.size()));
+  CHECK(session.servo.tick_view().contact_rows() >= static_cast<int>(contacts.size()));
   const std::vector<Vector3> x = test::deformed_surface(pad, snapshot);
   Vector3 sum = Vector3::Zero(), on_vertices = Vector3::Zero();
   for (const ToolContact& c : contacts) {
@@ -387,12 +391,12 @@ TEST_CASE("contacts of a rotated model are in the world frame, on the vertices o
     Vector3 point = Vector3::Zero();
     for (std::size_t a = 0; a < 3; ++a) point += c.weights[a] * x[static_cast<std::size_t>(c.vertices[a])];
     CHECK((c.point - pad.to_world() * point).norm() <= 0.25 * sphere_radius);  // the facets lack the dent
-    CHECK(std::abs((session.servo.proxy() - c.point).norm() - sphere_radius) <= 1e-3 * sphere_radius);
-    CHECK(((session.servo.proxy() - c.point).normalized() - c.normal).norm() <= 0.05);
+    CHECK(std::abs((session.servo.tick_view().proxy() - c.point).norm() - sphere_radius) <= 1e-3 * sphere_radius);
+    CHECK(((session.servo.tick_view().proxy() - c.point).normalized() - c.normal).norm() <= 0.05);
   }
   for (const VertexForce& f : snapshot.vertex_forces()) on_vertices += f.force.in_world(pad.to_world());
   CHECK(sum.norm() > 0.05);
-  CHECK((sum - session.servo.contact_force()).norm() <= 1e-12);
+  CHECK((sum - session.servo.tick_view().contact_force()).norm() <= 1e-12);
   CHECK((sum + on_vertices).norm() <= 1e-12);
 }
 
@@ -403,8 +407,8 @@ TEST_CASE("reset lifts the tools and restarts", "[haptic][servo]") {
   session.hold(40);
   const Vector3 pressed = session.forces[0].force();
   session.servo.reset();
-  CHECK(session.servo.contacts().empty());
-  CHECK(test::same(session.servo.contact_force(), Vector3::Zero()));
+  CHECK(session.servo.tick_view().contacts().empty());
+  CHECK(test::same(session.servo.tick_view().contact_force(), Vector3::Zero()));
   CHECK(test::same(session.tick().force(), Vector3::Zero()));
   CHECK(session.forces[0].status.has(StatusFlag::ramping));
   session.hold(50);

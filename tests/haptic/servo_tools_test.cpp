@@ -55,7 +55,7 @@ TEST_CASE("a tool of any number that lost the surface is placed again, while the
     INFO("tool " << lost);
     CHECK(tools.reacquired[lost] > 0);
     CHECK(tools.reacquired[1 - lost] == 0);
-    CHECK(tools.servo.contact_force(lost).z() > 0.0);
+    CHECK(tools.servo.tick_view().contact_force(lost).z() > 0.0);
   }
 }
 
@@ -74,7 +74,7 @@ TEST_CASE("a single point that is grasped is pulled as hard beside another tool 
     std::array<double, 2> pulls{};
     for (double& pull : pulls) {
       session.move(session.states[0].position + Vector3(0.0, 0.0, 1e-3), 50);
-      pull = -session.servo.contact_force(0)[2];
+      pull = -session.servo.tick_view().contact_force(0)[2];
     }
     const double stiffness = (pulls[1] - pulls[0]) / 1e-3;
     // At least a third of that of a flat punch of the same area on a half-space.
@@ -107,14 +107,15 @@ TEST_CASE("the sum of a snapshot's contacts is the contact force, also with gras
     }
     CHECK(grasped == expected);
     for (std::size_t i : {0u, 1u})
-      CHECK((sum[i] - tools.servo.contact_force(i)).norm() <= 1e-9 * tools.servo.contact_force(i).norm());
+      CHECK((sum[i] - tools.servo.tick_view().contact_force(i)).norm() <=
+            1e-9 * tools.servo.tick_view().contact_force(i).norm());
   };
   look(0);
   tools.move(0, {-0.007, 0.0006, round_radius - 1e-3}, 20);  // lateral motion
-  REQUIRE(tools.servo.is_holding(0));
+  REQUIRE(tools.servo.tick_view().is_holding(0));
   look(1);
   tools.move(0, {-0.008, -0.0005, round_radius + 3e-3}, 40);  // pulls: only the grasped point, towards the surface
-  CHECK(tools.servo.contact_force(0).z() < 0.0);
+  CHECK(tools.servo.tick_view().contact_force(0).z() < 0.0);
   look(1);
   tools.move(1, {0.009, 0.001, round_radius - 8e-4}, 20);
   tools.states[1].buttons = 1;
@@ -145,12 +146,12 @@ TEST_CASE("more points in contact than rows: no tool starves, and the force is s
       states[second].position = Vector3(0.026, 0.015, test::pad_height + 4e-3 + 1e-3 - 3e-3 * later);
       const Status status = servo.tick(states)[0].status;
       const double before = result.large;
-      result.large = servo.contact_force(first).norm();
+      result.large = servo.tick_view().contact_force(first).norm();
       result.jump = std::max(result.jump, std::abs(result.large - before));
       result.flagged = status.has(StatusFlag::degraded_model);
     }
-    result.small = servo.contact_force(second).norm();
-    result.missing = servo.missing_depth();
+    result.small = servo.tick_view().contact_force(second).norm();
+    result.missing = servo.tick_view().missing_depth();
     return result;
   };
   // The large sphere lowers the surface below the small one: the reference has room for all points.

@@ -77,7 +77,7 @@ SoftSession press(MovingTissue& tissue, int ticks, Depth depth, double from = 0.
       next += tissue.step();
     }
     const GatedForce out = servo.tick({std::array{above(k, depth(1e-3 * k), from)}})[0];
-    s.force = servo.contact_force();
+    s.force = servo.tick_view().contact_force();
     REQUIRE(s.force.allFinite());
     if (k > 50) s.largest_change = std::max(s.largest_change, (s.force - last).norm());
     if (k >= ticks - 100) s.status |= out.status;
@@ -121,7 +121,7 @@ TEST_CASE("a slight touch gives the force of linear elasticity", "[haptic][soft]
   HapticFEModel<Tet4, LinearElastic> linear(pad(), pad_scene(), LinearElastic{5e3, 0.45, 1000.0});
   HapticServo servo(linear, SphereTool{.radius = sphere}, device());
   for (int k = 0; k < 600; ++k) servo.tick({std::array{above(k, slight(1e-3 * k))}});
-  CHECK_THAT(soft, WithinRel(servo.contact_force()[2], 0.02));
+  CHECK_THAT(soft, WithinRel(servo.tick_view().contact_force()[2], 0.02));
 }
 
 TEST_CASE("a released tissue returns to rest, and a stalled one stays elastic", "[haptic][soft]") {
@@ -137,13 +137,13 @@ TEST_CASE("a released tissue returns to rest, and a stalled one stays elastic", 
   for (int k = 0; k < 400; ++k) {  // 0.4 s without a tissue step: in, hold, out
     const double next = k < 100 ? depth + 5e-5 : k < 300 ? depth : depth - 5e-5;
     servo.tick({std::array{above(k, next)}});
-    work += servo.contact_force()[2] * (next - depth);
+    work += servo.tick_view().contact_force()[2] * (next - depth);
     depth = next;
-    most = std::max(most, servo.contact_force()[2]);
+    most = std::max(most, servo.tick_view().contact_force()[2]);
   }
   CHECK(most > 0.1);
   CHECK(work >= -0.02 * most * 0.004);  // the hand gains no energy
-  CHECK(servo.contact_force()[2] == 0.0);
+  CHECK(servo.tick_view().contact_force()[2] == 0.0);
 }
 
 TEST_CASE("a tissue after reset knows nothing of the session before", "[haptic][soft]") {

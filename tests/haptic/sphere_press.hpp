@@ -27,7 +27,7 @@ SpherePress press_sphere(Model& model, double radius, const Vector3& at, const V
     s.time = 1e-3 * k;
     result.status = servo.tick(s).status;
   }
-  result.force = -servo.contact_force().dot(direction);
+  result.force = -servo.tick_view().contact_force().dot(direction);
   return result;
 }
 

@@ -145,10 +145,10 @@ TEST_CASE("a sphere in a slot whose contact forces cancel is neither unsettled n
       state.position = slot.centre + 1e-6 * std::sin(0.1 * i) * Vector3::UnitZ();
       flags.count(servo.tick(state).status);
       double sum = 0.0;
-      for (const ToolContact& c : servo.contacts()) sum += c.force;
+      for (const ToolContact& c : servo.tick_view().contacts()) sum += c.force;
       pressed = std::max(pressed, sum);
-      largest = std::max(largest, servo.contact_force().norm());
-      deepest = std::max(deepest, servo.indentation());
+      largest = std::max(largest, servo.tick_view().contact_force().norm());
+      deepest = std::max(deepest, servo.tick_view().indentation());
     }
     CAPTURE(friction, pressed, largest);
     REQUIRE(pressed > 0.01);

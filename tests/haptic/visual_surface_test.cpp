@@ -47,7 +47,7 @@ Vector3 press(Servo& servo, const Vector3& at, double depth) {
     state.position = at + Vector3(0, 0, tool_radius - depth * i / 100.0);
     servo.tick({&state, 1});
   }
-  return servo.contact_force();
+  return servo.tick_view().contact_force();
 }
 
 Vector3 at(const std::vector<float>& values, std::size_t i) {
@@ -92,7 +92,8 @@ TEST_CASE("the rendered surface coincides with the surface of the body", "[model
   }
   CHECK(lowest < 0.01 - 0.5e-3);
   // The surface has the dent of the facets, which is flatter than that of the contact points between them.
-  for (std::size_t i = 0; i < 49; ++i) CHECK((at(positions, i) - servo.proxy()).norm() >= 0.9 * tool_radius);
+  for (std::size_t i = 0; i < 49; ++i)
+    CHECK((at(positions, i) - servo.tick_view().proxy()).norm() >= 0.9 * tool_radius);
 }
 
 TEST_CASE("a fine surface follows an affine displacement exactly, on the body and above it", "[model][visual]") {
@@ -221,7 +222,7 @@ TEST_CASE("contacts of a snapshot carry point, normal and the whole force", "[ha
     CHECK((c.point - Vector3(0.11, 0.01, 0.01)).norm() < tool_radius);
     sum += c.force * c.normal;
   }
-  CHECK((sum - servo.contact_force()).norm() <= 1e-12 * sum.norm());
+  CHECK((sum - servo.tick_view().contact_force()).norm() <= 1e-12 * sum.norm());
 }
 
 TEST_CASE("a single model in a group gives the same force as alone", "[contact][group]") {

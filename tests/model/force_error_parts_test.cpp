@@ -74,9 +74,9 @@ std::vector<PartsPress> press_to(Model& model, const PartsBody& body, const std:
       state.time += 1e-3;
       state.position = {body.at * body.size()[0], body.at * body.size()[1], body.size()[2] + parts_radius - depth};
       const Status status = servo.tick(state).status;
-      const double force = servo.contact_force()[2];
+      const double force = servo.tick_view().contact_force()[2];
       if (k == 80 || (k > 30 && std::abs(force - before) < 1e-6 * force)) {
-        presses.push_back({force, servo.force_error(), status});
+        presses.push_back({force, servo.tick_view().force_error(), status});
         break;
       }
       before = force;
@@ -241,16 +241,16 @@ TEST_CASE("the bound is infinite while a column is missing, then the force is th
   for (int k = 0; k < 5000 && there < 30; ++k) {
     state.time += 1e-3;
     const bool degraded = servo.tick(state).status.has(StatusFlag::degraded_model);
-    if (servo.contact_force()[2] == 0.0) continue;
-    CHECK(degraded == std::isinf(servo.force_error().parts.late));
-    CHECK(std::isfinite(servo.force_error().bound) == !degraded);
+    if (servo.tick_view().contact_force()[2] == 0.0) continue;
+    CHECK(degraded == std::isinf(servo.tick_view().force_error().parts.late));
+    CHECK(std::isfinite(servo.tick_view().force_error().bound) == !degraded);
     missing += degraded;
     there = degraded ? 0 : there + 1;
     if (degraded) std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
   CHECK(missing > 0);
   REQUIRE(there == 30);
-  CHECK(servo.contact_force()[2] == Catch::Approx(truth).epsilon(1.5e-2));  // with points of another level
+  CHECK(servo.tick_view().contact_force()[2] == Catch::Approx(truth).epsilon(1.5e-2));  // with points of another level
 }
 
 TEST_CASE("the bound of a force is the sum of its parts", "[force_error][parts]") {

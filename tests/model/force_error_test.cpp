@@ -74,7 +74,7 @@ template <class Model>
 BarredPress hold_over(Model& model, double radius, double x, double y, double depth) {
   HapticServo servo = rigid_servo(model, radius);
   const Status status = pressed_over(servo, radius, x, y, depth).status;
-  return {servo.contact_force().z(), servo.force_error(), status};
+  return {servo.tick_view().contact_force().z(), servo.tick_view().force_error(), status};
 }
 
 template <class E>
@@ -127,10 +127,10 @@ TEST_CASE("the corrected force of a plate that is too stiff in bending is nearer
   for (const double depth : {radius / 8.0, radius / 4.0}) {
     const GatedForce force = pressed_over(servo, radius, x, y, depth, force_error_plate.z());
     const double truth = pressed_over(exact, radius, x, y, depth, force_error_plate.z()).force()[2];
-    CAPTURE(depth, truth, force.force()[2], servo.contact_force()[2], force.error.bound);
+    CAPTURE(depth, truth, force.force()[2], servo.tick_view().contact_force()[2], force.error.bound);
     CHECK(std::abs(force.force()[2] - truth) <= force.error.bound);
     CHECK_THAT(force.error.force, Catch::Matchers::WithinRel(force.force().norm(), 1e-9));
-    given += std::pow(servo.contact_force()[2] / truth - 1.0, 2);
+    given += std::pow(servo.tick_view().contact_force()[2] / truth - 1.0, 2);
     corrected += std::pow(force.force()[2] / truth - 1.0, 2);
   }
   CAPTURE(model.report().accuracy.typical, given, corrected);
@@ -144,8 +144,9 @@ TEST_CASE("forces are corrected only where it is asked for, as far as the bound 
   const auto ratio = [&](auto& model, bool corrected) {
     HapticServo servo = rigid_servo(model, radius, corrected);
     const GatedForce force = pressed_over(servo, radius, 0.03, 0.03, radius / 8.0, force_error_plate.z());
-    CHECK((force.error.expected == 0.0) == (corrected && force.error.bound < 0.2 * servo.contact_force().norm()));
-    return force.force()[2] / servo.contact_force()[2];
+    CHECK((force.error.expected == 0.0) ==
+          (corrected && force.error.bound < 0.2 * servo.tick_view().contact_force().norm()));
+    return force.force()[2] / servo.tick_view().contact_force()[2];
   };
   SetupOptions options{.force_error = measured_force_error(1)};
   options.force_error.wanted = 0.2;
@@ -317,7 +318,7 @@ BarredPress press_lobe(Model& model, double radius, double x, double depth) {
     state.position = {x, 0.5 * bending_lobe.y(), bending_lobe.z() + radius - depth * std::min(1.0, i / 20.0)};
     servo.tick(state);
   }
-  return {servo.contact_force().z(), servo.force_error(), {}};
+  return {servo.tick_view().contact_force().z(), servo.tick_view().force_error(), {}};
 }
 
 Scene two_sided_lobe(const TouchOptions& options) {
@@ -384,7 +385,7 @@ TEST_CASE("a pinch is not corrected by the missing depth of a single sphere, whi
         states[1].position = {x, 0.02, -out};
         force = servo.tick(states)[0];
       }
-      const double contact = servo.contact_force(0).norm();
+      const double contact = servo.tick_view().contact_force(0).norm();
       CAPTURE(x, depth, contact, force.force().norm(), force.error.bound);
       CHECK_THAT(force.force().norm(), Catch::Matchers::WithinRel(contact, 0.1));
       CHECK(force.error.bound < infinity);

@@ -26,7 +26,7 @@ double pinched_force(Model& model, double radius, const palpate::Vector3& above,
     states[1].position = below - out * Vector3::UnitZ();
     servo.tick(states);
   }
-  return servo.contact_force(0).z();
+  return servo.tick_view().contact_force(0).z();
 }
 
 }  // namespace test

@@ -240,7 +240,7 @@ TEST_CASE("viscoelastic tissue without inertia relaxes under a deep press withou
       state.time = 1e-3 * (k + 1);
       state.position = Vector3(0.031, 0.0295, 0.03 + radius - radius * std::min(1.0, 0.01 * k));
       const Status status = servo.tick(state).status;
-      const double force = servo.contact_force()[2];
+      const double force = servo.tick_view().contact_force()[2];
       if (k > 1000) {
         CHECK(!status.has(StatusFlag::solver_not_converged));
         CHECK(force <= last + 5e-3);  // where the iterations end depends on rounding; swinging was 0.13 N per step

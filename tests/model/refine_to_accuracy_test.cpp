@@ -51,7 +51,7 @@ double force_on_block(Model& model) {
     state.time = 1e-3 * k;
     servo.tick(state);
   }
-  return servo.contact_force().z();
+  return servo.tick_view().contact_force().z();
 }
 
 /// Energy that the rendered force gives on a closed path, relative to that of the press: in over a point of the top,

@@ -35,7 +35,7 @@ int press(Servo& servo, int ticks) {
     state.time = 1e-3 * i;
     servo.tick({&state, 1});
   }
-  const double force = servo.contact_force().norm();
+  const double force = servo.tick_view().contact_force().norm();
   std::printf("%.6g N\n", force);
   return force > 0.0 && force < 10.0 ? 0 : 1;
 }

@@ -4,7 +4,6 @@
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_surface.hpp>
-#include <palpate/contact/detail/blade_cut.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
@@ -14,6 +13,7 @@
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
+#include <palpate/haptic/tick_view.hpp>
 
 #include <memory>
 #include <optional>
@@ -74,50 +74,16 @@ class HapticServo {
   /// tick's own thread.
   void release() noexcept { tissue_.end_tick({}, {}); }
 
-  /// Penetration of the deepest point that had no row in the last tick, relative to the deepest push: roughly the part
-  /// of the force that is missing since contacts are more than ServoOptions::contact allows (degraded_model). For the
-  /// tick's own thread.
-  double missing_depth() const noexcept { return problem_.missing_depth(); }
+  /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
+  /// thread; valid until the next tick.
+  TickView tick_view() const noexcept { return {tissue_, problem_, hands_, newest_->tool_contacts()}; }
+
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
-  /// Number of contact rows of the last tick: points that press, and points that would have penetrated.
-  int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
-  /// Pressing contacts, grasped points and cutting blades of the last tick, world frame; valid until the next. For the
-  /// tick's own thread.
-  std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
-  /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m]. For the tick's own thread.
-  Vector3 proxy(std::size_t tool = 0) const noexcept;
-  /// Contact force, or cutting force of a blade, before the gate and without correction
-  /// (ServoOptions::corrected_force), world frame [N]. For the tick's own thread.
-  Vector3 contact_force(std::size_t tool = 0) const noexcept;
-  /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
-  /// of contacts left out; of the corrected force, where it is corrected. Its bound is infinite where
-  /// nothing was measured. For the tick's own thread.
-  ForceError force_error(std::size_t tool = 0) const noexcept { return hands_[tool].error; }
-  /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m]. For the
-  /// tick's own thread.
-  double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, hands_[tool].tool); }
-  /// Contact torque about the proxy before the gate, world frame [N m]. For the tick's own thread.
-  Vector3 contact_torque(std::size_t tool = 0) const noexcept;
-  /// Axis of a capsule on the surface, or of a blade's edge, world frame. For the tick's own thread.
-  Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
-  /// Rotation of a tool on the surface, from its own frame to the world; the identity for a blade. For the tick's own
-  /// thread.
-  Matrix3 proxy_rotation(std::size_t tool = 0) const noexcept;
-  /// Whether a tool grasps a point of the surface. For the tick's own thread.
-  bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
-  /// State of a blade; null for another tool. For the tick's own thread.
-  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept {
-    return hands_[tool].blade ? &hands_[tool].blade->cut() : nullptr;
-  }
   /// Limits of a tool's gate.
   const ForceLimits& limits(std::size_t tool = 0) const noexcept { return hands_[tool].gate.limits(); }
-  /// Energy tank of a tool; null without one. For the tick's own thread.
-  const EnergyTank* energy(std::size_t tool = 0) const noexcept {
-    return hands_[tool].tank ? &*hands_[tool].tank : nullptr;
-  }
 
   /// Newest snapshot, for one reader thread; never waits. Valid until the next call.
   const Snapshot& read_snapshot() noexcept {

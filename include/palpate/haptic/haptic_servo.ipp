@@ -148,26 +148,6 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
   publish();
 }
 
-PALPATE_INLINE Vector3 HapticServo::proxy(std::size_t tool) const noexcept {
-  return hands_[tool].blade ? hands_[tool].blade->cut().edge() : Vector3(tissue_.to_world() * hands_[tool].tool.proxy);
-}
-PALPATE_INLINE Vector3 HapticServo::contact_force(std::size_t tool) const noexcept {
-  return hands_[tool].blade ? hands_[tool].blade->force()
-                            : Vector3(rotation_of(tissue_.to_world()) * hands_[tool].tool.force);
-}
-PALPATE_INLINE Vector3 HapticServo::contact_torque(std::size_t tool) const noexcept {
-  return rotation_of(tissue_.to_world()) * hands_[tool].tool.torque;
-}
-PALPATE_INLINE Vector3 HapticServo::proxy_axis(std::size_t tool) const noexcept {
-  if (hands_[tool].blade) return hands_[tool].blade->cut().tool().edge.normalized();
-  return rotation_of(tissue_.to_world()) * hands_[tool].tool.axis();
-}
-
-PALPATE_INLINE Matrix3 HapticServo::proxy_rotation(std::size_t tool) const noexcept {
-  if (hands_[tool].blade) return Matrix3::Identity();
-  return rotation_of(tissue_.to_world()) * hands_[tool].tool.rotation;
-}
-
 /// Notes when a tissue that moves by itself was last updated.
 PALPATE_INLINE void HapticServo::note_updates() noexcept {
   if (!tissue_.has_updates()) return;
@@ -250,14 +230,15 @@ PALPATE_INLINE Status HapticServo::status_of(detail::Hand& hand) noexcept {
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
+  const TickView view = tick_view();
   Snapshot& s = snapshots_.back();
   s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.to_world());
   for (const detail::Hand& hand : hands_) {
     const std::size_t i = hand.number;
-    s.proxies[i] = proxy(i);
-    s.axes[i] = proxy_axis(i);
+    s.proxies[i] = view.proxy(i);
+    s.axes[i] = view.proxy_axis(i);
     s.errors[i] = hand.error;
-    if (hand.tool.hull != nullptr) s.rotations[i] = proxy_rotation(i);
+    if (hand.tool.hull != nullptr) s.rotations[i] = view.proxy_rotation(i);
     if (hand.blade) s.note_blade(static_cast<int>(i), s.proxies[i], hand.blade->force());
   }
   s.time = hands_.front().input.time();

@@ -38,8 +38,9 @@ std::vector<TickResult> run_session(T& tissue, const ToolList& tools, std::span<
   std::vector<TickResult> results;
   for (const ToolState& state : path) {
     const GatedForce& force = servo.tick(state);
-    results.push_back({force.force(), force.torque(), servo.contact_force(), servo.proxy(), servo.indentation(),
-                       servo.contact_rows(), force.status, servo.force_error()});
+    const TickView view = servo.tick_view();
+    results.push_back({force.force(), force.torque(), view.contact_force(), view.proxy(), view.indentation(),
+                       view.contact_rows(), force.status, view.force_error()});
     if constexpr (HasBackgroundWork<T>) tissue.background_work();
   }
   servo.release();

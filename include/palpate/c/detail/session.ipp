@@ -143,11 +143,12 @@ struct palpate_session {
     using namespace palpate::c_interface;
     for (std::size_t i = 0; i < tools; ++i) states[i] = state_from(given[i]);
     const std::span<const palpate::GatedForce> forces = servo->tick(states);
-    const int rows = servo->contact_rows();
+    const palpate::TickView view = servo->tick_view();
+    const int rows = view.contact_rows();
     for (std::size_t i = 0; i < tools; ++i) {
       write(forces[i].force(), out[i].force);
       write(forces[i].torque(), out[i].torque);
-      write(servo->contact_force(i), out[i].contact_force);
+      write(view.contact_force(i), out[i].contact_force);
       out[i].error_expected = forces[i].error.expected;
       out[i].error_bound = forces[i].error.bound;
       out[i].status = forces[i].status.bits();

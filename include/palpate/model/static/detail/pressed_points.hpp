@@ -15,7 +15,7 @@ struct SurfacePoint {
   Vector3 outward = Vector3::Zero();
 };
 
-/// Force along `outward` [N], and HapticServo::indentation [m].
+/// Force along `outward` [N], and TickView::indentation [m].
 struct PressedPoint {
   double force = 0.0, indentation = 0.0;
 };
@@ -42,7 +42,7 @@ inline std::vector<PressedPoint> press_points(HapticServo& servo, double radius,
       states[i].position = points[i].position + (radius - depth) * points[i].outward;
     }
     servo.tick(states);
-    return servo.contact_force().dot(points.front().outward);
+    return servo.tick_view().contact_force().dot(points.front().outward);
   };
   std::vector<PressedPoint> pressed;
   double depth = -0.1 * radius;
@@ -55,7 +55,7 @@ inline std::vector<PressedPoint> press_points(HapticServo& servo, double radius,
       before = force;
       force = force_at(goal);
     }
-    pressed.push_back({force, servo.indentation()});
+    pressed.push_back({force, servo.tick_view().indentation()});
   }
   return pressed;
 }
