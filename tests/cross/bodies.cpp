@@ -30,9 +30,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double round_support = -0.4, round_touchable = -0.2;
 constexpr double least_quality = 0.05, sliver_quality = 0.035;
 
-bool is_round(const Scene& scene) {
-  return !has_hexahedra(scene.body);
-}
 bool is_flat(const Scene& scene) {
   return scene.body == "block" || scene.body == "plate" || scene.body == "lobe";
 }

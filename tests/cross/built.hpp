@@ -54,6 +54,10 @@ struct Body {
 bool is_hexahedral(const Scene& scene);
 /// Whether a body can be made of hexahedra.
 bool has_hexahedra(const std::string& body);
+/// Whether the body of a scene has no box of hexahedra as its reference shape.
+inline bool is_round(const Scene& scene) {
+  return !has_hexahedra(scene.body);
+}
 
 Body make_body(const Scene& scene, const Change& change = {});
 

@@ -19,6 +19,11 @@ struct SolverOf<CutCondensed> {
   }
 };
 
+template <class E, class M>
+struct Used<HapticFEModel<E, M, CutCondensed>> {
+  using Type = CuttableTissue<E>;
+};
+
 void add_cut(Compositions& all) {
   all.push_back(composition<Tet4, LinearElastic, CutCondensed>());
   all.push_back(composition<Tet4, TransverselyIsotropic, CutCondensed>());

@@ -16,4 +16,9 @@ struct SolverOf<palpate::Cuttable<palpate::Implicit<palpate::QuasiNewton<S>>>> {
   }
 };
 
+template <class E, class M, class S>
+struct Used<palpate::HapticFEModel<E, M, palpate::Cuttable<palpate::Implicit<palpate::QuasiNewton<S>>>>> {
+  using Type = palpate::CuttableMovingTissue<E>;
+};
+
 }  // namespace cross

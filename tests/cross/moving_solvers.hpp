@@ -9,6 +9,15 @@
 
 namespace cross {
 
+template <class E, class M, class Method>
+struct Used<palpate::HapticFEModel<E, M, palpate::Implicit<Method>>> {
+  using Type = palpate::MovingTissue;
+};
+template <class E, class M, class Scheme>
+struct Used<palpate::HapticFEModel<E, M, palpate::Explicit<Scheme>>> {
+  using Type = palpate::MovingTissue;
+};
+
 /// Of a solver with no parameter but the step.
 template <class Model, class Construct>
 std::unique_ptr<Model> make_stepping(const Scene& scene, const Construct& construct) {

@@ -145,9 +145,6 @@ std::string material_of(const Scene& scene, double youngs_modulus) {
 bool is_one_of(const std::string& word, std::initializer_list<const char*> some) {
   return std::ranges::find(some, word) != some.end();
 }
-bool is_round(const Scene& scene) {
-  return !has_hexahedra(scene.body);
-}
 bool is_explicit(const Scene& scene) {
   return is_one_of(scene.solver, {"central_difference", "semi_implicit_euler"});
 }

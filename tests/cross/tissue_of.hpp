@@ -11,6 +11,7 @@
 #include <palpate/model/static/measured_force_error.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,12 +22,13 @@
 
 namespace cross {
 
-/// The model of a scene as it is constructed. `Make` returns a new one as std::unique_ptr<Model>; a pair calls it
-/// twice.
+/// The model of a scene as it is constructed. `Model` is a base of it where one has all that is used here: then this is
+/// compiled once for all models on that base. `make` returns a new one; a pair calls it twice.
 template <class Model>
 class TissueOf final : public Tissue {
  public:
-  template <class Make>
+  using Make = std::function<std::shared_ptr<Model>()>;
+
   TissueOf(const Make& make, const Body& body, const TissueOptions& options)
       : member_(options.member), distance_(10.0 * body.size), model_(make()) {
     if (member_ == "group" || member_ == "pair")
@@ -135,7 +137,7 @@ class TissueOf final : public Tissue {
 
   std::string member_;
   double distance_;
-  std::unique_ptr<Model> model_, second_;
+  std::shared_ptr<Model> model_, second_;  // shared: a base may have no public destructor
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::optional<palpate::TissueAdaptor<Model>> adaptor_;
   std::optional<palpate::TissueGroup> group_;
@@ -146,6 +148,16 @@ class TissueOf final : public Tissue {
 template <class Solver>
 struct SolverOf;
 
+/// What TissueOf is compiled for: a base of the model that has all its hooks, or the model itself.
+template <class Model>
+struct Used {
+  using Type = Model;
+};
+template <class E, class M, palpate::SolverPolicy Solver>
+struct Used<palpate::HapticFEModel<E, M, Solver>> {
+  using Type = palpate::LinearTissue<typename palpate::SolverTraits<Solver>::Scalar>;
+};
+
 /// Whether models of a solver take a cache file.
 template <class Solver>
 inline constexpr bool takes_cache = requires {
@@ -153,48 +165,56 @@ inline constexpr bool takes_cache = requires {
 };
 
 /// Columns are computed in the tick that needs them, so that results do not depend on a thread.
-template <class Solver>
-palpate::SetupOptions setup_options(const Scene& scene, const TissueOptions& given) {
+inline palpate::SetupOptions setup_options(bool cached, const Scene& scene, const TissueOptions& given) {
   palpate::SetupOptions options;
   options.threads = given.threads;
   options.columns = palpate::ColumnFill::synchronous;
-  if (takes_cache<Solver>) options.cache_file = given.cache_file;
+  if (cached) options.cache_file = given.cache_file;
   if (scene.measured || scene.corrected) options.force_error = palpate::measured_force_error();
   return options;
 }
 
-/// Calls f with the mesh of an element.
-template <class E, class F>
-auto with_mesh(const Body& body, const F& f) {
+/// The mesh for elements E.
+template <class E>
+decltype(auto) mesh_of(const Body& body) {
   if constexpr (std::is_same_v<E, palpate::Tet10>)
-    return f(palpate::promote<E>(body.tetrahedra));
+    return palpate::promote<E>(body.tetrahedra);
   else if constexpr (std::is_same_v<E, palpate::Hex20>)
-    return f(palpate::promote<E>(body.hexahedra));
+    return palpate::promote<E>(body.hexahedra);
   else if constexpr (E::nodes == 8)
-    return f(body.hexahedra);
+    return (body.hexahedra);
   else
-    return f(body.tetrahedra);
+    return (body.tetrahedra);
+}
+
+template <class M>
+palpate::RegionMaterials<M> materials_of(const Scene& scene, const Body& body, const TissueOptions& given,
+                                         const std::vector<std::string>& regions) {
+  palpate::RegionMaterials<M> materials;
+  for (std::size_t r = 0; r < body.moduli.size(); ++r)
+    materials.emplace_back(regions.at(r),
+                           Law<M>::make({body.moduli[r], scene.poisson_ratio, body.density, given.axes}));
+  return materials;
 }
 
 template <class E, class M, class Solver>
 std::unique_ptr<Tissue> make_tissue(const Scene& scene, const Body& body, const TissueOptions& given) {
   using Model = palpate::HapticFEModel<E, M, Solver>;
-  const palpate::SetupOptions options = setup_options<Solver>(scene, given);
-  return with_mesh<E>(body, [&](const auto& mesh) -> std::unique_ptr<Tissue> {
-    palpate::RegionMaterials<M> materials;
-    for (std::size_t r = 0; r < body.moduli.size(); ++r)
-      materials.emplace_back(mesh.region_names.at(r),
-                             Law<M>::make({body.moduli[r], scene.poisson_ratio, body.density, given.axes}));
-    const auto make = [&] {
-      if constexpr (requires { typename Model::Parameters; })
-        return SolverOf<Solver>::template make<Model>(scene, body, [&](const typename Model::Parameters& parameters) {
-          return std::make_unique<Model>(mesh, body.conditions, materials, options, parameters);
-        });
-      else
-        return std::make_unique<Model>(mesh, body.conditions, materials, options);
-    };
-    return std::make_unique<TissueOf<Model>>(make, body, given);
-  });
+  using Part = typename Used<Model>::Type;
+  const palpate::SetupOptions options = setup_options(takes_cache<Solver>, scene, given);
+  const auto& mesh = mesh_of<E>(body);
+  const palpate::RegionMaterials<M> materials = materials_of<M>(scene, body, given, mesh.region_names);
+  const auto make = [&] {
+    std::shared_ptr<Part> model;
+    if constexpr (requires { typename Model::Parameters; })
+      model = SolverOf<Solver>::template make<Model>(scene, body, [&](const typename Model::Parameters& parameters) {
+        return std::make_unique<Model>(mesh, body.conditions, materials, options, parameters);
+      });
+    else
+      model = std::make_unique<Model>(mesh, body.conditions, materials, options);
+    return model;
+  };
+  return std::make_unique<TissueOf<Part>>(make, body, given);
 }
 
 template <class E, class M, class Solver>
