@@ -2,14 +2,11 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_surface.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/thread_exchange.hpp>
-#include <palpate/haptic/detail/hand.hpp>
-#include <palpate/haptic/detail/tool_recovery.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
@@ -22,9 +19,14 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class ContactProblem;
+
 namespace detail {
 
+struct Hand;
 class ForceErrorMeasurement;
+class ServoBlade;
+class ToolInput;
 
 }  // namespace detail
 
@@ -52,6 +54,7 @@ class HapticServo {
   requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
+  ~HapticServo();
   HapticServo(const HapticServo&) = delete;
   HapticServo& operator=(const HapticServo&) = delete;
 
@@ -76,14 +79,14 @@ class HapticServo {
 
   /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
   /// thread; valid until the next tick.
-  TickView tick_view() const noexcept { return {tissue_, problem_, hands_, newest_->tool_contacts()}; }
+  TickView tick_view() const noexcept;
 
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// Limits of a tool's gate.
-  const ForceLimits& limits(std::size_t tool = 0) const noexcept { return hands_[tool].gate.limits(); }
+  const ForceLimits& limits(std::size_t tool = 0) const noexcept;
 
   /// Newest snapshot, for one reader thread; never waits. Valid until the next call.
   const Snapshot& read_snapshot() noexcept {
@@ -113,7 +116,7 @@ class HapticServo {
   std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<ContactTool> contact_tools_;
-  ContactProblem problem_;
+  std::unique_ptr<ContactProblem> problem_;  // behind a pointer: its headers take long to compile
   CoarseFacetReport coarse_facets_;
   std::vector<GatedForce> forces_;
   std::vector<detail::Hand> hands_;  // refer to contact tools and forces

@@ -1,9 +1,12 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
+#include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/detail/hand.hpp>
+#include <palpate/haptic/detail/tool_recovery.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include <algorithm>
@@ -31,12 +34,12 @@ inline ContactParameters contact_parameters(const TissueView& tissue, ContactPar
 }
 /// A contact problem on the surface of a tissue, which is prepared for it. Also where all tools are blades: tissue that
 /// is cut then makes contact problems like this one, with room for the vertices that a cut adds.
-inline ContactProblem prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
-                                       const ContactParameters& contact) {
+inline std::unique_ptr<ContactProblem> prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
+                                                        const ContactParameters& contact) {
   const ContactParameters parameters =
       contact_parameters(tissue, contact.for_tools(tools.size(), tissue.contact_surface().has_large_strain()));
   tissue.prepare_tools(radii_of(tools), parameters);
-  return {tissue.contact_surface(), radii_of(tools), parameters};
+  return std::make_unique<ContactProblem>(tissue.contact_surface(), radii_of(tools), parameters);
 }
 inline ToolState unreadable() noexcept {
   ToolState s;
@@ -68,9 +71,18 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
   check_units();
   hands_.reserve(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) hands_.push_back(make_hand(i, options, energy));
-  Snapshot empty(problem_.capacity());
+  Snapshot empty(problem_->capacity());
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
+}
+
+PALPATE_INLINE HapticServo::~HapticServo() = default;
+
+PALPATE_INLINE TickView HapticServo::tick_view() const noexcept {
+  return {tissue_, *problem_, hands_.data(), newest_->tool_contacts()};
+}
+PALPATE_INLINE const ForceLimits& HapticServo::limits(std::size_t tool) const noexcept {
+  return hands_[tool].gate.limits();
 }
 
 /// Notes or refuses tools that are larger than a metre.
@@ -124,23 +136,23 @@ PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOpt
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
-  Status shared = tissue_.begin_tick(problem_);
+  Status shared = tissue_.begin_tick(*problem_);
   for (detail::Hand& hand : hands_)
     take(hand, hand.number < states.size() ? states[hand.number] : detail::unreadable());
   note_updates();
-  shared |= problem_.solve(tissue_, contact_tools_);
-  const detail::ToolRecovery recovery(tissue_, problem_);
-  if (recovery.sweep_lost_tools(hands_)) shared |= problem_.solve(tissue_, contact_tools_);
-  if (recovery.place_lost_tools(hands_)) shared |= problem_.solve(tissue_, contact_tools_);
+  shared |= problem_->solve(tissue_, contact_tools_);
+  const detail::ToolRecovery recovery(tissue_, *problem_);
+  if (recovery.sweep_lost_tools(hands_)) shared |= problem_->solve(tissue_, contact_tools_);
+  if (recovery.place_lost_tools(hands_)) shared |= problem_->solve(tissue_, contact_tools_);
   for (detail::Hand& hand : hands_) recovery.recover(hand);
   for (detail::Hand& hand : hands_) pass(hand, shared);
-  if (tissue_.takes_forces()) tissue_.end_tick(problem_.vertex_forces(), problem_.point_forces());
+  if (tissue_.takes_forces()) tissue_.end_tick(problem_->vertex_forces(), problem_->point_forces());
   publish();
   return forces_;
 }
 
 PALPATE_INLINE void HapticServo::reset() noexcept {
-  problem_.reset();
+  problem_->reset();
   started_ = false;
   updates_ = 0;
   for (detail::Hand& hand : hands_) hand.reset();
@@ -160,7 +172,7 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
 
 PALPATE_INLINE void HapticServo::take(detail::Hand& hand, const ToolState& state) noexcept {
   if (hand.blade) return take_blade(*hand.blade, hand.input, state);
-  hand.input.take(state, tissue_.to_world(), tissue_.contact_surface(), problem_.contacts(), hand.tool);
+  hand.input.take(state, tissue_.to_world(), tissue_.contact_surface(), problem_->contacts(), hand.tool);
   if (hand.tank) hand.tank->rotated(hand.gate.last_torque().dot(hand.input.rotation()));
 }
 
@@ -181,7 +193,7 @@ PALPATE_INLINE void HapticServo::take_blade(detail::ServoBlade& blade, detail::T
 PALPATE_INLINE double HapticServo::estimate_error(detail::Hand& hand) noexcept {
   ForceError& error = hand.error;
   error = hand.blade ? ForceError{0.0, infinity, hand.blade->force().norm()}
-                     : problem_.force_error(tissue_, hand.number, hand.tool);
+                     : problem_->force_error(tissue_, hand.number, hand.tool);
   constexpr double whole = 0.2, none = 0.4;  // bounds, relative to the force
   if (!corrected_force_ || error.expected == 0.0 || hand.tool.grasping) return 1.0;
   const double trusted = std::clamp((none - error.relative()) / (none - whole), 0.0, 1.0);
@@ -216,15 +228,15 @@ PALPATE_INLINE void HapticServo::pass(detail::Hand& hand, Status shared) noexcep
 
 /// What is to be reported of a tool at the end of a tick.
 PALPATE_INLINE Status HapticServo::status_of(detail::Hand& hand) noexcept {
-  Status status = hand.input.status() | problem_.status_of(hand.number, hand.tool);
+  Status status = hand.input.status() | problem_->status_of(hand.number, hand.tool);
   if (tissue_.has_updates() && hand.input.is_stalled(stale_tissue_after_)) status.set(StatusFlag::stalled_tissue);
-  hand.lost_contact = !hand.blade && detail::ToolRecovery(tissue_, problem_).has_lost_contact(hand);
+  hand.lost_contact = !hand.blade && detail::ToolRecovery(tissue_, *problem_).has_lost_contact(hand);
   if (hand.lost_contact) status.set(StatusFlag::lost_contact);
   const ForceErrorParts& parts = hand.error.parts;
-  const double large = ContactProblem::flagged_error * problem_.scale_of_force(hand.number, hand.error.force);
+  const double large = ContactProblem::flagged_error * problem_->scale_of_force(hand.number, hand.error.force);
   const auto is_large = [&](double part) { return part > large && part < infinity; };
   if (is_large(parts.mesh)) status.set(StatusFlag::coarse_contact);
-  if (is_large(parts.merged) && problem_.has_fewer_points(hand.number)) status.set(StatusFlag::degraded_model);
+  if (is_large(parts.merged) && problem_->has_fewer_points(hand.number)) status.set(StatusFlag::degraded_model);
   if (is_large(parts.linearity)) status.set(StatusFlag::large_displacement);
   return status;
 }
@@ -232,7 +244,7 @@ PALPATE_INLINE Status HapticServo::status_of(detail::Hand& hand) noexcept {
 PALPATE_INLINE void HapticServo::publish() noexcept {
   const TickView view = tick_view();
   Snapshot& s = snapshots_.back();
-  s.note(problem_.contacts(), problem_.vertex_forces(), tissue_.to_world());
+  s.note(problem_->contacts(), problem_->vertex_forces(), tissue_.to_world());
   for (const detail::Hand& hand : hands_) {
     const std::size_t i = hand.number;
     s.proxies[i] = view.proxy(i);

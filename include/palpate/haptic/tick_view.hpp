@@ -1,15 +1,24 @@
 // What the last tick of a servo computed.
 #pragma once
 
-#include <palpate/contact/contact_problem.hpp>
-#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/concepts/force_error.hpp>
 #include <palpate/contact/tissue_view.hpp>
-#include <palpate/haptic/detail/hand.hpp>
+#include <palpate/core/types.hpp>
+#include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 
 #include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
+
+class ContactProblem;
+
+namespace detail {
+
+class BladeCut;
+struct Hand;
+
+}  // namespace detail
 
 /// Contacts, proxies and forces after a tick of a HapticServo, and its energy tanks. For the thread that ticks, or
 /// while none does; valid until the next tick. Other threads read ServoSnapshot. Costs nothing to make: it refers to
@@ -19,10 +28,10 @@ class TickView {
   /// Pressing contacts, grasped points and cutting blades, world frame.
   std::span<const ToolContact> contacts() const noexcept { return contacts_; }
   /// Number of contact rows: points that press, and points that would have penetrated.
-  int contact_rows() const noexcept { return static_cast<int>(problem_.contacts().size()); }
+  int contact_rows() const noexcept;
   /// Penetration of the deepest point that had no row, relative to the deepest push: roughly the part of the force that
   /// is missing since contacts are more than ServoOptions::contact allows (degraded_model).
-  double missing_depth() const noexcept { return problem_.missing_depth(); }
+  double missing_depth() const noexcept;
 
   /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m].
   Vector3 proxy(std::size_t tool = 0) const noexcept;
@@ -38,29 +47,25 @@ class TickView {
   /// Estimated error of the contact force: of the mesh, as measured at set-up for the tool that Scene::touch names, and
   /// of contacts left out; of the corrected force, where it is corrected. Its bound is infinite where nothing was
   /// measured.
-  ForceError force_error(std::size_t tool = 0) const noexcept { return hands_[tool].error; }
+  ForceError force_error(std::size_t tool = 0) const noexcept;
   /// How deep a tool presses the surface at rest: the mean over its contacts, weighted with their forces [m].
-  double indentation(std::size_t tool = 0) const noexcept { return problem_.indentation(tool, hands_[tool].tool); }
+  double indentation(std::size_t tool = 0) const noexcept;
   /// Whether a tool grasps a point of the surface.
-  bool is_holding(std::size_t tool = 0) const noexcept { return problem_.is_holding(tool); }
+  bool is_holding(std::size_t tool = 0) const noexcept;
   /// State of a blade; null for another tool.
-  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept {
-    return hands_[tool].blade ? &hands_[tool].blade->cut() : nullptr;
-  }
+  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept;
   /// Energy tank of a tool; null without one.
-  const EnergyTank* energy(std::size_t tool = 0) const noexcept {
-    return hands_[tool].tank ? &*hands_[tool].tank : nullptr;
-  }
+  const EnergyTank* energy(std::size_t tool = 0) const noexcept;
 
  private:
   friend class HapticServo;
-  TickView(const TissueView& tissue, const ContactProblem& problem, std::span<const detail::Hand> hands,
+  TickView(const TissueView& tissue, const ContactProblem& problem, const detail::Hand* hands,
            std::span<const ToolContact> contacts) noexcept
       : tissue_(tissue), problem_(problem), hands_(hands), contacts_(contacts) {}
 
   const TissueView& tissue_;
   const ContactProblem& problem_;
-  std::span<const detail::Hand> hands_;
+  const detail::Hand* hands_;  // one per tool
   std::span<const ToolContact> contacts_;
 };
 

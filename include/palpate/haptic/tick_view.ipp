@@ -1,11 +1,35 @@
 // Definitions of tick_view.hpp.
 #pragma once
 
+#include <palpate/contact/contact_problem.hpp>
+#include <palpate/contact/detail/blade_cut.hpp>
 #include <palpate/core/rigid_motion.hpp>
+#include <palpate/haptic/detail/hand.hpp>
 #include <palpate/haptic/tick_view.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+PALPATE_INLINE int TickView::contact_rows() const noexcept {
+  return static_cast<int>(problem_.contacts().size());
+}
+PALPATE_INLINE double TickView::missing_depth() const noexcept {
+  return problem_.missing_depth();
+}
+PALPATE_INLINE ForceError TickView::force_error(std::size_t tool) const noexcept {
+  return hands_[tool].error;
+}
+PALPATE_INLINE double TickView::indentation(std::size_t tool) const noexcept {
+  return problem_.indentation(tool, hands_[tool].tool);
+}
+PALPATE_INLINE bool TickView::is_holding(std::size_t tool) const noexcept {
+  return problem_.is_holding(tool);
+}
+PALPATE_INLINE const detail::BladeCut* TickView::blade(std::size_t tool) const noexcept {
+  return hands_[tool].blade ? &hands_[tool].blade->cut() : nullptr;
+}
+PALPATE_INLINE const EnergyTank* TickView::energy(std::size_t tool) const noexcept {
+  return hands_[tool].tank ? &*hands_[tool].tank : nullptr;
+}
 PALPATE_INLINE Vector3 TickView::proxy(std::size_t tool) const noexcept {
   const detail::Hand& hand = hands_[tool];
   return hand.blade ? hand.blade->cut().edge() : Vector3(tissue_.to_world() * hand.tool.proxy);
