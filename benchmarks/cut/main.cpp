@@ -91,7 +91,8 @@ double largest_difference(const detail::CutSystem<Tet4>& a, const detail::CutSys
   std::vector<std::pair<Index, Index>> same;
   for (NodeId node = 0; node < t.mesh().node_count(); ++node)
     for (int c = 0; c < 3; ++c)
-      if (a.place(node, c) >= 0 && b.place(node, c) >= 0) same.push_back({a.place(node, c), b.place(node, c)});
+      if (a.index_of(node, c) >= 0 && b.index_of(node, c) >= 0)
+        same.push_back({a.index_of(node, c), b.index_of(node, c)});
   for (const auto& [i, k] : same)
     for (const auto& [j, l] : same) {
       wrong = std::max(wrong, std::abs((*x)(i, j) - (*y)(k, l)));

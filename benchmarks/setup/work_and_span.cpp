@@ -159,7 +159,7 @@ std::vector<FrontTime> time_copy(const detail::CholeskyAnalysis& analysis, const
   detail::BigArray factor(tree.factor_size + 64), updates(tree.workspace_size + 64);
   for (detail::BigArray* a : {&factor, &updates}) std::fill_n(a->data(), a->size(), 0.0);  // page faults do not count
   detail::FrontSystem system(tree, factor.data(), SparseCholesky::pivot_threshold);
-  system.take(lower);
+  system.refer_to(lower);
   detail::FrontWork work(tree, analysis.pack_size());
   std::vector<FrontTime> times;
   for (Index f = 0; f < tree.fronts.size(); ++f) {

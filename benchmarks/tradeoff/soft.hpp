@@ -100,18 +100,18 @@ class SoftContender : public Contender {
         const auto body = make_hyperelastic_body(mesh_, materials_);
         const detail::BodyParts parts =
             detail::divide_body(mesh_ref(body.rest.mesh), tissue_.touchable_nodes(), parameters_.large_strain_within);
-        const auto far = assemble_stiffness<E>(detail::part_of(body.rest, parts.far), SetupLimits{});
-        VectorX near_u(3 * static_cast<Index>(parts.near.nodes.size())), near_f(near_u.size()), far_u(far.size()),
+        const auto far = assemble_stiffness<E>(detail::part_of(body.rest, parts.far_part), SetupLimits{});
+        VectorX near_u(3 * static_cast<Index>(parts.near_part.nodes.size())), near_f(near_u.size()), far_u(far.size()),
             far_f(far.size());
-        parts.near.gather(u, near_u);
-        parts.far.gather(u, far_u);
-        palpate::detail::make_energy_forces<double>(detail::part_of(body, parts.near), SetupLimits{})
+        parts.near_part.gather(u, near_u);
+        parts.far_part.gather(u, far_u);
+        palpate::detail::make_energy_forces<double>(detail::part_of(body, parts.near_part), SetupLimits{})
             ->evaluate(near_u, near_f, report);
         far.apply(far_u, far_f);
         f.setZero();
-        parts.far.scatter(far_f, f);
-        for (std::size_t i = 0; i < parts.near.nodes.size(); ++i)
-          add_node_vector(f, Index{parts.near.nodes[i]}, node_vector(near_f, static_cast<Index>(i)));
+        parts.far_part.scatter(far_f, f);
+        for (std::size_t i = 0; i < parts.near_part.nodes.size(); ++i)
+          add_node_vector(f, Index{parts.near_part.nodes[i]}, node_vector(near_f, static_cast<Index>(i)));
         return f;
       }
     exact().evaluate(u, f, report);

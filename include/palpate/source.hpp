@@ -52,6 +52,7 @@
 #include <palpate/device/trajectory.ipp>
 #include <palpate/haptic/background_worker.ipp>
 #include <palpate/haptic/detail/tool_input.ipp>
+#include <palpate/haptic/detail/tool_recovery.ipp>
 #include <palpate/haptic/energy_tank.ipp>
 #include <palpate/haptic/force_gate.ipp>
 #include <palpate/haptic/haptic_loop.ipp>
@@ -60,6 +61,7 @@
 #include <palpate/haptic/loop_report.ipp>
 #include <palpate/haptic/servo_options.ipp>
 #include <palpate/haptic/servo_snapshot.ipp>
+#include <palpate/haptic/tick_view.ipp>
 #include <palpate/io/abaqus.ipp>
 #include <palpate/io/decimal.ipp>
 #include <palpate/io/detail/abaqus_groups.ipp>

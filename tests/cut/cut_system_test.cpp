@@ -45,7 +45,7 @@ struct CutBlock {
     if (!(system.measured_error() > 1e-12)) return false;
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
-      if (is_constrained(node) && system.place(node, 2) >= 0) kept.push_back(node);
+      if (is_constrained(node) && system.index_of(node, 2) >= 0) kept.push_back(node);
     system = detail::CutSystem<E>(topology, physics, kept);
     last.reset();
     return true;
@@ -55,7 +55,8 @@ struct CutBlock {
   double error() {
     std::vector<NodeId> kept;
     for (NodeId node = 0; node < topology.mesh().node_count(); ++node)
-      if (is_constrained(node) && (system.place(node, 0) >= 0 || system.place(node, 2) >= 0)) kept.push_back(node);
+      if (is_constrained(node) && (system.index_of(node, 0) >= 0 || system.index_of(node, 2) >= 0))
+        kept.push_back(node);
     const detail::CutSystem<E> fresh(topology, physics, kept);
     const auto step = last ? last : system.folded_step();
     const auto truth = fresh.folded_step();
@@ -64,10 +65,10 @@ struct CutBlock {
       for (const NodeId b : kept)
         for (int c = 0; c < 3; ++c)
           for (int d = 0; d < 3; ++d) {
-            const Index i = system.place(a, c), j = system.place(b, d);
-            REQUIRE((i >= 0) == (fresh.place(a, c) >= 0));
+            const Index i = system.index_of(a, c), j = system.index_of(b, d);
+            REQUIRE((i >= 0) == (fresh.index_of(a, c) >= 0));
             if (i < 0 || j < 0) continue;
-            const double exact = (*truth)(fresh.place(a, c), fresh.place(b, d));
+            const double exact = (*truth)(fresh.index_of(a, c), fresh.index_of(b, d));
             wrong = std::max(wrong, std::abs((*step)(i, j) - exact));
             scale = std::max(scale, std::abs(exact));
           }

@@ -105,16 +105,16 @@ TEST_CASE("an invalid reading after the surface was lost lifts the tool", "[hapt
   tool.radius = test::sphere_radius;
   ToolState state;
   state.position = Vector3(0.0137, 0.0159, test::pad_height);
-  input.take(state, pad.to_world(), surface, {}, tool);
+  input.receive(state, pad.to_world(), surface, {}, tool);
   REQUIRE(tool.active);
   tool.force = Vector3(0.0, 0.0, 1.0);
   input.lose();
   state.valid = false;
-  input.take(state, pad.to_world(), surface, {}, tool);
+  input.receive(state, pad.to_world(), surface, {}, tool);
   CHECK_FALSE(tool.active);
   CHECK(tool.force.norm() == 0.0);
   state.valid = true;
-  input.take(state, pad.to_world(), surface, {}, tool);
+  input.receive(state, pad.to_world(), surface, {}, tool);
   CHECK(tool.active);
   CHECK(input.restarted());
 }

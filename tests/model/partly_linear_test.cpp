@@ -74,21 +74,22 @@ TEST_CASE("a body is divided by the distance along its edges", "[model][partly_l
   std::size_t last = 0;
   for (const double within : {0.0, 0.015, 0.03, 0.045, 1.0}) {
     const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched, within);
-    CHECK(parts.near.elements.size() > last);
-    last = parts.near.elements.size();
-    CHECK(parts.near.elements.size() + parts.far.elements.size() == mesh.elements.size());
-    CHECK(parts.near.nodes.size() + parts.far.nodes.size() == mesh.positions.size() + parts.interface.size());
+    CHECK(parts.near_part.elements.size() > last);
+    last = parts.near_part.elements.size();
+    CHECK(parts.near_part.elements.size() + parts.far_part.elements.size() == mesh.elements.size());
+    CHECK(parts.near_part.nodes.size() + parts.far_part.nodes.size() ==
+          mesh.positions.size() + parts.interface_nodes.size());
     for (const NodeId i : touched)
-      for (const NodeId e : around.of(i)) CHECK(std::ranges::binary_search(parts.near.elements, Index{e}));
-    for (const NodeId i : parts.interface) CHECK((parts.near.local(i) >= 0 && parts.far.local(i) >= 0));
-    for (const Index e : parts.far.elements)
+      for (const NodeId e : around.of(i)) CHECK(std::ranges::binary_search(parts.near_part.elements, Index{e}));
+    for (const NodeId i : parts.interface_nodes) CHECK((parts.near_part.local(i) >= 0 && parts.far_part.local(i) >= 0));
+    for (const Index e : parts.far_part.elements)
       for (const NodeId i : mesh.elements[static_cast<std::size_t>(e)])
         for (const NodeId t : touched) {
           const double straight = (mesh.position(Index{i}) - mesh.position(Index{t})).norm();
-          CHECK((straight > within || parts.near.local(i) >= 0));  // a path is not shorter
+          CHECK((straight > within || parts.near_part.local(i) >= 0));  // a path is not shorter
         }
   }
-  CHECK(detail::divide_body(mesh_ref(mesh), touched, 1.0).far.elements.empty());
+  CHECK(detail::divide_body(mesh_ref(mesh), touched, 1.0).far_part.elements.empty());
 }
 
 TEMPLATE_TEST_CASE("at small displacement linear surroundings change nothing", "[model][partly_linear]", Tet4, Tet10) {
@@ -134,15 +135,16 @@ TEST_CASE("the force of a surrounded part is the derivative of its energy", "[mo
   const auto mesh = slab<Tet4>();
   const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched_nodes(mesh, touched_slab()), 0.01);
   const auto body = make_hyperelastic_body(mesh, std::vector{neo_hookean_liver});
-  const auto far = detail::part_of(body.rest, parts.far);
+  const auto far = detail::part_of(body.rest, parts.far_part);
   detail::LinearSurroundings surroundings(
       assemble_stiffness<Tet4>(far, {}),
-      detail::conditions_of(parts.far, resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
-      far.mesh.positions, parts.interface_in(parts.far), {});
+      detail::conditions_of(parts.far_part, resolve_essential(mesh, extract_boundary<Tet4>(mesh), touched_slab())),
+      far.mesh.positions, parts.interface_in(parts.far_part), {});
   const MatrixX& s = surroundings.stiffness();
   CHECK((s - s.transpose()).norm() == 0.0);
-  detail::SurroundedForces forces(detail::make_energy_forces<double>(detail::part_of(body, parts.near), SetupLimits{}),
-                                  s, detail::dofs_in(parts.near, parts.far, surroundings.kept()));
+  detail::SurroundedForces forces(
+      detail::make_energy_forces<double>(detail::part_of(body, parts.near_part), SetupLimits{}), s,
+      detail::dofs_in(parts.near_part, parts.far_part, surroundings.kept()));
   Random random(5);
   VectorX u(forces.size()), f(u.size()), unused(u.size()), direction(u.size());
   for (double& x : u) x = random.uniform(-5e-4, 5e-4);
@@ -225,7 +227,7 @@ TEST_CASE("a refusal of a part names the nodes of the body", "[model][partly_lin
   const detail::BodyParts parts = detail::divide_body(mesh_ref(mesh), touched, 0.02);
   mesh.region_names = {"tissue", "light"};
   mesh.regions.assign(mesh.elements.size(), 0);
-  for (const Index e : parts.near.elements) mesh.regions[static_cast<std::size_t>(e)] = 1;
+  for (const Index e : parts.near_part.elements) mesh.regions[static_cast<std::size_t>(e)] = 1;
   NeoHookean light = neo_hookean_liver;
   light.density = 0.0;
   try {
@@ -236,8 +238,8 @@ TEST_CASE("a refusal of a part names the nodes of the body", "[model][partly_lin
     CHECK(e.kind() == SetupErrorKind::bad_density);
     REQUIRE(!e.problem().ids.empty());
     const auto node = static_cast<NodeId>(e.problem().ids[0]);
-    CHECK(parts.near.local(node) >= 0);
-    CHECK(parts.far.local(node) < 0);
+    CHECK(parts.near_part.local(node) >= 0);
+    CHECK(parts.far_part.local(node) < 0);
   }
 }
 

@@ -335,7 +335,7 @@ TEST_CASE("a renewed factor changes the number of iterations, not where steps en
     constant->set_prescribed(compressed);
     const auto method_of = [](const TissueMotion& motion) -> const detail::QuasiNewtonMotion& {
       const auto* partly = dynamic_cast<const detail::PartlyLinearMotion*>(&motion);
-      return static_cast<const detail::QuasiNewtonMotion&>(partly != nullptr ? partly->near() : motion);
+      return static_cast<const detail::QuasiNewtonMotion&>(partly != nullptr ? partly->near_motion() : motion);
     };
     int iterations = 0, iterations_constant = 0;
     for (int k = 0; k < 400; ++k) {

@@ -46,7 +46,7 @@ struct EssentialConditions {
     for (Index k = 0; k < free_count(); ++k) free_part[k] = full[free_dofs[static_cast<std::size_t>(k)]];
   }
   /// Full vector with `free_part` on free dofs and `values` on prescribed dofs.
-  void place(const VectorX& free_part, const VectorX& values, VectorX& full) const noexcept {
+  void scatter(const VectorX& free_part, const VectorX& values, VectorX& full) const noexcept {
     full = values;
     for (Index k = 0; k < free_count(); ++k) full[free_dofs[static_cast<std::size_t>(k)]] = free_part[k];
   }

@@ -18,7 +18,7 @@ class TissueClaim {
 
   /// True until it is set to false, also when the tissue is gone by then. Throws unsupported when another servo has
   /// taken the tissue.
-  Taken take() {
+  Taken acquire() {
     if (taken_->exchange(true))
       raise(SetupErrorKind::unsupported,
             "this tissue keeps a state between ticks (it moves, is cut or stiffens), and another servo or session uses it",
@@ -35,8 +35,8 @@ namespace detail {
 /// Holds the claim on a tissue, if it has one, during its lifetime.
 class ClaimedTissue {
  public:
-  /// Throws as TissueClaim::take.
-  explicit ClaimedTissue(TissueClaim* claim) : taken_(claim != nullptr ? claim->take() : nullptr) {}
+  /// Throws as TissueClaim::acquire.
+  explicit ClaimedTissue(TissueClaim* claim) : taken_(claim != nullptr ? claim->acquire() : nullptr) {}
   ~ClaimedTissue() {
     if (taken_ != nullptr) taken_->store(false);
   }

@@ -97,7 +97,7 @@ class ContactProblem {
   static constexpr int vertices_per_contact = 12;
   static constexpr int maximum_rounds = 12;            // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;           // rows, those of deepest penetration
-  static constexpr double unsettled = 0.05;            // relative change of force that is left and is flagged
+  static constexpr double unconverged_change = 0.05;   // relative change of force that is left and is flagged
   static constexpr double growing = 0.005;             // the same where a change is larger than the one before
   static constexpr double first_change_safety = 10.0;  // factor on the change of force in the first linearisation
   static constexpr double estimate_safety = 1.75;      // factor on the estimate after one linearisation
@@ -129,7 +129,7 @@ class ContactProblem {
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   inline std::array<bool, maximum_tools> are_near(Tools tools) const noexcept;
-  void share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept;
+  void share_rows(Tools tools, const std::array<bool, maximum_tools>& is_near) noexcept;
   /// The contacts of a tool on one body; their vertices are numbered in that body.
   struct BodyContacts {
     std::span<const Contact> rows;

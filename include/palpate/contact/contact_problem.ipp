@@ -68,17 +68,18 @@ PALPATE_INLINE detail::ContactSamples ContactProblem::made_samples(const Contact
 
 /// Whether tools have contact points near them.
 inline std::array<bool, maximum_tools> ContactProblem::are_near(Tools tools) const noexcept {
-  std::array<bool, maximum_tools> near{};
-  for (std::size_t t = 0; t < tools.size(); ++t) near[t] = tools[t].active && candidates_.has_any(static_cast<int>(t));
-  return near;
+  std::array<bool, maximum_tools> is_near{};
+  for (std::size_t t = 0; t < tools.size(); ++t)
+    is_near[t] = tools[t].active && candidates_.has_any(static_cast<int>(t));
+  return is_near;
 }
 
 /// Divides the rows among these tools.
-PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<bool, maximum_tools>& near) noexcept {
+PALPATE_INLINE void ContactProblem::share_rows(Tools tools, const std::array<bool, maximum_tools>& is_near) noexcept {
   std::array<detail::PointLevels::Size, maximum_tools> sizes{};
   for (std::size_t t = 0; t < tools.size(); ++t)
     if (tools[t].active) sizes[t] = {tools[t].radius, tools[t].point_scale()};
-  levels_.begin_tick(candidates_.samples(), sizes, near,
+  levels_.begin_tick(candidates_.samples(), sizes, is_near,
                      {rows_.capacity(), parameters_.pressing_points, candidates_.subfacet() != nullptr});
 }
 
@@ -190,8 +191,8 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     displacement_.forget();
     start_.forget();
   }
-  auto near = are_near(tools);
-  share_rows(tools, near);
+  auto is_near = are_near(tools);
+  share_rows(tools, is_near);
   set_levels(tools);
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
@@ -203,7 +204,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     }
     proxies_.begin(tools, floor_);
     status |= update_candidates(tissue, tools);
-    if (const auto now = are_near(tools); now != near) share_rows(tools, near = now);
+    if (const auto now = are_near(tools); now != is_near) share_rows(tools, is_near = now);
     if (iteration == 0) {
       start_levels(tissue, tools);
       status |= grasp(tissue, tools);
@@ -226,12 +227,12 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
   levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped,
                    vertices_of_print(tissue.contact_surface()));
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (rest > unsettled || !rows_.has_settled() ||
+  if (rest > unconverged_change || !rows_.has_converged() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   bool presses = rows_.deepest_push() > 0.0;
   for (const Grasp& g : grasps_) presses = presses || g.holds_any();
-  if (proxies_.end_tick(tools, rest <= unsettled, presses, rows_.largest_force_scale(tools)))
+  if (proxies_.end_tick(tools, rest <= unconverged_change, presses, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   return status;
 }
@@ -690,9 +691,9 @@ PALPATE_INLINE Status ContactProblem::grasp(const TissueView& tissue, Tools tool
     const int most = rows_.capacity() / (6 * static_cast<int>(tools.size()));
     takes_pad[t] = parameters_.grasp_radius > 0.0 && most > 2;
     if (takes_pad[t])
-      g.take_pad(tissue.contact_surface(), candidates_, *point, tool, parameters_.grasp_radius, most);
+      g.grasp_pad(tissue.contact_surface(), candidates_, *point, tool, parameters_.grasp_radius, most);
     else
-      g.take(*point, tool);
+      g.grasp_point(*point, tool);
   }
   if (!pin_pads()) return {};
   for (std::size_t t = 0; t < tools.size(); ++t)
@@ -848,11 +849,11 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
   const double unnoticed = violation * rows_.deepest_push();  // by the force
   std::array<double, maximum_tools> reaches{};
   for (std::size_t t = 0; t < tools.size(); ++t) reaches[t] = proxies_.ahead(t).farthest + 2.0 * rows_.longest_path();
-  for (detail::Candidates::Near& near : candidates_.within(reaches, tools)) {
-    const double reach = reaches[at(near.tool)];
-    if (candidates_.least_gap(near) > reach) continue;
-    detail::Candidate& c = candidates_.items()[at(near.number)];
-    candidates_.note_gap(near);
+  for (detail::Candidates::Near& item : candidates_.within(reaches, tools)) {
+    const double reach = reaches[at(item.tool)];
+    if (candidates_.least_gap(item) > reach) continue;
+    detail::Candidate& c = candidates_.items()[at(item.number)];
+    candidates_.note_gap(item);
     if (c.row >= 0 || candidates_.least_gap(c) > reach) continue;
     const bool is_finer = !may_have_row(c);
     if ((is_finer && levels_.has_areas()) || is_grasped(tissue.contact_surface(), c)) continue;
@@ -861,7 +862,7 @@ PALPATE_INLINE void ContactProblem::add_violated(const TissueView& tissue, Tools
     if (candidates_.is_stale(c)) {
       const bool is_far = candidates_.raise_least_gap(tissue, tool, start_, c) > reach;
       if (!is_far) candidates_.evaluate(tissue, tool, start_, c);
-      candidates_.note_gap(near);
+      candidates_.note_gap(item);
       if (is_far) continue;
     }
     double gap = c.gap + c.normal.dot(ahead.path);

@@ -69,9 +69,9 @@ class CoulombFriction {
     bool sticks = false;
   };
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  std::size_t place(int i, int j) const noexcept { return at(i) * capacity_ + at(j); }
-  const double* along_row(int i) const noexcept { return &along_[place(i, 0)].first; }
-  const double* across_row(int i) const noexcept { return &across_[place(i, 0)].first; }
+  std::size_t index(int i, int j) const noexcept { return at(i) * capacity_ + at(j); }
+  const double* along_row(int i) const noexcept { return &along_[index(i, 0)].first; }
+  const double* across_row(int i) const noexcept { return &across_[index(i, 0)].first; }
   Vector3 in_model(int i, const Pair& p) const noexcept {
     const Frame& f = frame_[at(i)];
     return {f.x.dot(p), f.y.dot(p), f.z.dot(p)};

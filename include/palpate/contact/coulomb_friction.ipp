@@ -44,12 +44,12 @@ PALPATE_INLINE void CoulombFriction::set(int i, const Vector3& normal, const Vec
 PALPATE_INLINE void CoulombFriction::set_row(int i, const double* w, std::size_t stride) noexcept {
   for (int j = 0; j <= i; ++j, ++w) {
     const double xx = w[0], xy = w[stride], yx = w[3 * stride], yy = w[4 * stride];
-    across_[place(i, j)] = {w[6 * stride], w[7 * stride]};
-    across_[place(j, i)] = {w[2 * stride], w[5 * stride]};
-    along_[place(2 * i, j)] = {xx, xy};
-    along_[place(2 * i + 1, j)] = {yx, yy};
-    along_[place(2 * j, i)] = {xx, yx};
-    along_[place(2 * j + 1, i)] = {xy, yy};
+    across_[index(i, j)] = {w[6 * stride], w[7 * stride]};
+    across_[index(j, i)] = {w[2 * stride], w[5 * stride]};
+    along_[index(2 * i, j)] = {xx, xy};
+    along_[index(2 * i + 1, j)] = {yx, yy};
+    along_[index(2 * j, i)] = {xx, yx};
+    along_[index(2 * j + 1, i)] = {xy, yy};
     if (i == j) step_[at(i)] = 1.0 / (0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));  // 1 / the stiffest
   }
 }

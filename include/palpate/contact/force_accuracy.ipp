@@ -36,19 +36,19 @@ PALPATE_INLINE MissingDepth::Level MissingDepth::at(std::size_t position, double
 PALPATE_INLINE ForceAccuracy::Loads ForceAccuracy::largest_loads(int number,
                                                                  std::span<const Contact> contacts) noexcept {
   constexpr int capacity = 24, unused = -1;
-  constexpr std::size_t slots = 64;  // of a hash table from vertices to their numbers here
+  constexpr std::size_t slot_count = 64;  // of a hash table from vertices to their numbers here
   std::array<int, capacity> vertices;
   std::array<double, capacity> loads;
-  std::array<signed char, slots> numbers;
+  std::array<signed char, slot_count> numbers;
   numbers.fill(unused);
   int count = 0;
   for (const Contact& c : contacts) {
     if (c.tool != number || !(c.force > 0.0)) continue;
     for (std::size_t a = 0; a < 3; ++a) {
       if (!(c.weights[a] > 0.0)) continue;
-      auto slot = static_cast<std::size_t>(c.vertices[a]) % slots;
+      auto slot = static_cast<std::size_t>(c.vertices[a]) % slot_count;
       while (numbers[slot] != unused && vertices[static_cast<std::size_t>(numbers[slot])] != c.vertices[a])
-        slot = (slot + 1) % slots;
+        slot = (slot + 1) % slot_count;
       if (numbers[slot] == unused) {
         if (count == capacity) continue;
         vertices[static_cast<std::size_t>(count)] = c.vertices[a];

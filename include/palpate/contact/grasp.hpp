@@ -29,11 +29,11 @@ class Grasp {
              const detail::Candidate& c) const noexcept;
 
   /// Grasps this point at its present place on the tool.
-  void take(const detail::Candidate& point, const ContactTool& tool) noexcept;
+  void grasp_point(const detail::Candidate& point, const ContactTool& tool) noexcept;
   /// Grasps the corners of the point's triangle and the vertices within `radius` [m] of the point along the surface, at
   /// most `most`, the nearest ones. They have no place on the tool before `place_pad`. No allocation; bounded work.
-  void take_pad(const ContactSurface& surface, const detail::Candidates& candidates, const detail::Candidate& point,
-                const ContactTool& tool, double radius, int most) noexcept;
+  void grasp_pad(const ContactSurface& surface, const detail::Candidates& candidates, const detail::Candidate& point,
+                 const ContactTool& tool, double radius, int most) noexcept;
   /// Gives the vertices of the pad their present places on the tool.
   void place_pad(const TissueView& tissue, detail::Candidates& candidates, detail::SurfaceDisplacement& displacement,
                  const ContactTool& tool) noexcept;

@@ -66,7 +66,7 @@ PALPATE_INLINE bool Grasp::holds(const ContactSurface& surface, const detail::Ca
   return moved > 0.5;
 }
 
-PALPATE_INLINE void Grasp::take(const detail::Candidate& point, const ContactTool& tool) noexcept {
+PALPATE_INLINE void Grasp::grasp_point(const detail::Candidate& point, const ContactTool& tool) noexcept {
   vertices_[static_cast<std::size_t>(count_)] = -1;
   for (int k = 0; k < 3; ++k) {
     detail::Candidate& c = rows_[static_cast<std::size_t>(3 * count_ + k)] = point;
@@ -78,25 +78,25 @@ PALPATE_INLINE void Grasp::take(const detail::Candidate& point, const ContactToo
   ++count_;
 }
 
-PALPATE_INLINE void Grasp::take_pad(const ContactSurface& surface, const detail::Candidates& candidates,
-                                    const detail::Candidate& point, const ContactTool& tool, double radius,
-                                    int most) noexcept {
+PALPATE_INLINE void Grasp::grasp_pad(const ContactSurface& surface, const detail::Candidates& candidates,
+                                     const detail::Candidate& point, const ContactTool& tool, double radius,
+                                     int most) noexcept {
   const detail::ContactSample& middle = candidates.sample_of(point);
   const Vector3 rest = detail::Candidates::rest(surface, middle);
   is_coarse_ = false;
   for (const int v : middle.vertices) is_coarse_ = is_coarse_ || (surface.position(v) - rest).norm() > radius;
-  const detail::PadSearch near(surface, middle.vertices, rest, radius);
-  const int points = std::min({near.count(), most, most_points});
+  const detail::PadSearch search(surface, middle.vertices, rest, radius);
+  const int points = std::min({search.count(), most, most_points});
   for (int i = 0; i < points; ++i) {
     detail::Candidate c = point;
-    c.sample = candidates.samples().of_vertex(surface, near.vertex(i));
+    c.sample = candidates.samples().of_vertex(surface, search.vertex(i));
     if (c.sample < 0) continue;
-    c.triangle = surface.triangles_at(near.vertex(i)).front();
+    c.triangle = surface.triangles_at(search.vertex(i)).front();
     c.row = c.slot = -1;
     c.history = {};
     c.generation = 0;
-    take(c, tool);
-    vertices_[static_cast<std::size_t>(count_ - 1)] = near.vertex(i);
+    grasp_point(c, tool);
+    vertices_[static_cast<std::size_t>(count_ - 1)] = search.vertex(i);
   }
 }
 

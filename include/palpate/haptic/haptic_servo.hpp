@@ -104,8 +104,8 @@ class HapticServo {
                                                  const ServoOptions& options) const;
   detail::Hand make_hand(std::size_t i, const ServoOptions& options, const Energy& energy);
   void note_updates() noexcept;
-  void take(detail::Hand& hand, const ToolState& state) noexcept;
-  void take_blade(detail::ServoBlade& blade, detail::ToolInput& input, const ToolState& state) noexcept;
+  void receive(detail::Hand& hand, const ToolState& state) noexcept;
+  void receive_blade(detail::ServoBlade& blade, detail::ToolInput& input, const ToolState& state) noexcept;
   double estimate_error(detail::Hand& hand) noexcept;
   void pass(detail::Hand& hand, Status shared) noexcept;
   Status status_of(detail::Hand& hand) noexcept;

@@ -138,7 +138,7 @@ PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const Too
   const FlushDenormals flush;
   Status shared = tissue_.begin_tick(*problem_);
   for (detail::Hand& hand : hands_)
-    take(hand, hand.number < states.size() ? states[hand.number] : detail::unreadable());
+    receive(hand, hand.number < states.size() ? states[hand.number] : detail::unreadable());
   note_updates();
   shared |= problem_->solve(tissue_, contact_tools_);
   const detail::ToolRecovery recovery(tissue_, *problem_);
@@ -170,16 +170,16 @@ PALPATE_INLINE void HapticServo::note_updates() noexcept {
   for (detail::Hand& hand : hands_) hand.input.note_tissue(has_news);
 }
 
-PALPATE_INLINE void HapticServo::take(detail::Hand& hand, const ToolState& state) noexcept {
-  if (hand.blade) return take_blade(*hand.blade, hand.input, state);
-  hand.input.take(state, tissue_.to_world(), tissue_.contact_surface(), problem_->contacts(), hand.tool);
+PALPATE_INLINE void HapticServo::receive(detail::Hand& hand, const ToolState& state) noexcept {
+  if (hand.blade) return receive_blade(*hand.blade, hand.input, state);
+  hand.input.receive(state, tissue_.to_world(), tissue_.contact_surface(), problem_->contacts(), hand.tool);
   if (hand.tank) hand.tank->rotated(hand.gate.last_torque().dot(hand.input.rotation()));
 }
 
 /// A blade restarts if it moved farther in a tick than the length of its edge.
-PALPATE_INLINE void HapticServo::take_blade(detail::ServoBlade& blade, detail::ToolInput& input,
-                                            const ToolState& state) noexcept {
-  input.take_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
+PALPATE_INLINE void HapticServo::receive_blade(detail::ServoBlade& blade, detail::ToolInput& input,
+                                               const ToolState& state) noexcept {
+  input.receive_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
   if (input.readable())
     blade.follow(tissue_.to_world() * input.position(), input.restarted(), tissue_);
   else

@@ -26,7 +26,7 @@ namespace detail {
 class StepLimit {
  public:
   /// Iterations from a random start after which the estimate is used alone.
-  static constexpr int settled = 20;
+  static constexpr int trusted_iterations = 20;
 
   /// `bound` is an upper bound of omega^2 [1/s^2] at rest, such as that of the worst element, or infinite. Until the
   /// estimate has settled the larger of the two is used; after that the estimate alone, because a deformed body may be
@@ -94,7 +94,7 @@ inline void StepLimit::restart() noexcept {
 }
 
 inline double StepLimit::largest_square() const noexcept {
-  return iterations_ < settled && square_ < bound_ ? bound_ : square_;  // NaN is preserved
+  return iterations_ < trusted_iterations && square_ < bound_ ? bound_ : square_;  // NaN is preserved
 }
 
 inline double StepLimit::step() const noexcept {
@@ -148,7 +148,7 @@ class ExplicitMotion {
   ExplicitMotion(Force force, const VectorX& nodal_mass, const std::vector<Index>& free_dofs,
                  double frequency_bound = infinity, const ExplicitOptions& options = {})
       : force_(std::move(force)), options_(options), limit_(force_.size(), frequency_bound, options.margin) {
-    check(nodal_mass, free_dofs, frequency_bound);
+    require_valid(nodal_mass, free_dofs, frequency_bound);
     const Index dofs = force_.size();
     for (VectorX* v : {&state_.displacement, &state_.velocity, &state_.force, &state_.load, &state_.target})
       *v = VectorX::Zero(dofs);
@@ -217,13 +217,14 @@ class ExplicitMotion {
     if (options_.limit_every > 0) limit_.restart();
     restart();
     if (options_.limit_every > 0)
-      estimate_limit(detail::StepLimit::settled);  // more, since it began with a random vector
+      estimate_limit(detail::StepLimit::trusted_iterations);  // more, since it began with a random vector
   }
   /// Resets the work, estimates the limit again (some 20 to 40 forces, none if limit_every is 0), and lets a stopped
   /// motion continue.
   void restart() noexcept {
     begin();
-    if (options_.limit_every > 0) estimate_limit(std::max(options_.first_iterations, detail::StepLimit::settled));
+    if (options_.limit_every > 0)
+      estimate_limit(std::max(options_.first_iterations, detail::StepLimit::trusted_iterations));
   }
 
   /// Largest step that is accepted [s], estimated at most limit_every steps ago.
@@ -285,7 +286,7 @@ class ExplicitMotion {
     double time = 0.0;
   };
 
-  void check(const VectorX& mass, const std::vector<Index>& free_dofs, double frequency_bound) const {
+  void require_valid(const VectorX& mass, const std::vector<Index>& free_dofs, double frequency_bound) const {
     if (3 * mass.size() != force_.size())
       raise(SetupErrorKind::bad_argument,
             "there are " + std::to_string(mass.size()) + " masses for " + std::to_string(force_.size() / 3) + " nodes");
@@ -302,10 +303,11 @@ class ExplicitMotion {
     if (!(frequency_bound > 0.0))
       raise(SetupErrorKind::bad_argument, "the bound of omega^2 is " + number(frequency_bound),
             "Give element_frequency_bound(body), or infinity");
-    if (frequency_bound == infinity && options_.first_iterations < detail::StepLimit::settled)
+    if (frequency_bound == infinity && options_.first_iterations < detail::StepLimit::trusted_iterations)
       raise(SetupErrorKind::bad_argument,
             "the stable step would be estimated by " + std::to_string(options_.first_iterations) + " iterations",
-            "Give a bound of omega^2, or " + std::to_string(detail::StepLimit::settled) + " first_iterations or more");
+            "Give a bound of omega^2, or " + std::to_string(detail::StepLimit::trusted_iterations) +
+                " first_iterations or more");
   }
 
   /// Starts counting work and energy at the current state.

@@ -89,11 +89,11 @@ PALPATE_INLINE void Definitions::read_set_line(Sets& sets, bool ids_are_foreign)
       TextReader digits(name, lines_.in.name());
       digits.next_line();
       const Index id = digits.integer("an id", 1, max_int);
-      sets.add_ids(id, id, 1, lines_.in.place());
+      sets.add_ids(id, id, 1, lines_.in.location());
       continue;
     }
     const Index id = lines_.in.integer("an id", 1, max_int);
-    if (!ids_are_foreign) sets.add_ids(id, id, 1, lines_.in.place());
+    if (!ids_are_foreign) sets.add_ids(id, id, 1, lines_.in.location());
   }
 }
 
@@ -102,7 +102,7 @@ PALPATE_INLINE void Definitions::read_range(Sets& sets) {
               last = lines_.in.integer("a last id", first, max_int);
   const Index step = lines_.in.rest().empty() ? 1 : lines_.in.integer("a step of ids", 1, max_int);
   lines_.in.end_line("a range of ids");
-  sets.add_ids(first, last, step, lines_.in.place());
+  sets.add_ids(first, last, step, lines_.in.location());
 }
 
 PALPATE_INLINE void Definitions::read_surface() {
@@ -118,7 +118,7 @@ PALPATE_INLINE void Definitions::read_surface() {
 
 PALPATE_INLINE void Definitions::read_surface_line(Surface& surface, bool is_of_nodes) {
   const Sets& sets = is_of_nodes ? groups.nodes : groups.elements;
-  SurfacePart part{-1, -1, SurfacePart::of_nodes, lines_.in.place()};
+  SurfacePart part{-1, -1, SurfacePart::of_nodes, lines_.in.location()};
   if (detail::is_number(lines_.in.rest())) {
     part.id = lines_.in.integer("an id", 1, max_int);
   } else {
@@ -190,7 +190,7 @@ inline FileMesh Parser::parse() {
       NodeId& node = mesh_.cell_nodes[cell.first_node + a];
       const Index found = nodes.find(node);
       if (found < 0)
-        refuse_at(in(), cell.place, SetupErrorKind::index_out_of_range, "the id of a node of this file",
+        refuse_at(in(), cell.location, SetupErrorKind::index_out_of_range, "the id of a node of this file",
                   {"'", node, "' in element ", cell.tag});
       node = static_cast<NodeId>(found);
     }
@@ -282,7 +282,7 @@ inline void Parser::read_nodes() {
   const std::size_t first = mesh_.positions.size();
   while (lines_.next_data()) {
     if (scope_ == Scope::assembly) continue;
-    node_lines_.push_back(in().place());
+    node_lines_.push_back(in().location());
     mesh_.node_tags.push_back(in().integer("a node id", 1, max_int));
     Vector3 x;
     for (int c = 0; c < 3; ++c) x[c] = coordinate();
@@ -309,7 +309,7 @@ inline void Parser::read_elements() {
     skip_elements();
   } else {
     while (lines_.next_data()) {
-      const Index line = in().place(), id = in().integer("an element id", 1, max_int);
+      const Index line = in().location(), id = in().integer("an element id", 1, max_int);
       for (int a = 0; a < facts(type->shape).nodes; ++a) {
         lines_.need_field("a node id");
         mesh_.cell_nodes.push_back(static_cast<NodeId>(in().integer("a node id", 1, max_int)));
@@ -335,7 +335,7 @@ inline void Parser::skip_elements() {
   bool continues = false;
   while (lines_.next_data()) {
     if (!continues && scope_ != Scope::assembly) {
-      element_lines_.push_back(in().place());
+      element_lines_.push_back(in().location());
       element_ids_.push_back(in().integer("an element id", 1, max_int));
       cells_.push_back(-1);
     }

@@ -21,8 +21,8 @@ struct TagName {
 
 /// A cell of the file. Its nodes are `facts(shape).nodes` entries of FileMesh::cell_nodes from `first_node` on.
 struct FileCell {
-  Index tag;    ///< its id in the file
-  Index place;  ///< its place in the file, for place_text
+  Index tag;       ///< its id in the file
+  Index location;  ///< its place in the file, for location_text
   std::size_t first_node;
   std::uint32_t tag_set;  ///< entry of FileMesh::tag_sets
   CellShape shape;

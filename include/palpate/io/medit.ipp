@@ -89,7 +89,7 @@ inline void Parser::read_cells(const Section& section) {
   const Index n = source_.count("a number of elements", 0, facts(shape).nodes + 1);
   for (Index i = 0; i < n; ++i) {
     source_.begin("an element");
-    const Index place = in().place();
+    const Index place = in().location();
     for (int a = 0; a < facts(shape).nodes; ++a)
       mesh_.cell_nodes.push_back(static_cast<NodeId>(source_.integer("a node id", 1, max_int)));
     mesh_.add_cell(++last, place, shape, tag_set(reference()), {});
@@ -118,8 +118,8 @@ inline void Parser::number_nodes() {
     for (std::size_t a = 0; a < static_cast<std::size_t>(facts(cell.shape).nodes); ++a) {
       NodeId& node = mesh_.cell_nodes[cell.first_node + a];
       if (node > n)
-        refuse(SetupErrorKind::index_out_of_range,
-               {place_text(in().name(), cell.place), ": expected a node id of at most ", n, ", found '", node, "'"});
+        refuse(SetupErrorKind::index_out_of_range, {location_text(in().name(), cell.location),
+                                                    ": expected a node id of at most ", n, ", found '", node, "'"});
       --node;
     }
 }

@@ -43,7 +43,7 @@ inline void read_nodes(TextReader& in, State& state) {
     const int marker = read_node_row(in, header, numbers, state.mesh);
     if (marker == 0) continue;
     state.mesh.cell_nodes.push_back(static_cast<NodeId>(i));
-    state.mesh.add_cell(i, in.place(), CellShape::point, state.sets.find_or_add(state.mesh, marker), {});
+    state.mesh.add_cell(i, in.location(), CellShape::point, state.sets.find_or_add(state.mesh, marker), {});
   }
   need_end(in, "nodes", header.count);
   state.base = std::max<Index>(numbers.base(), 0);
@@ -70,7 +70,7 @@ inline void read_elements(TextReader& in, State& state) {
   state.is_second_order = header.shape == CellShape::tetrahedron10;
   for (Index i = 0; i < header.count; ++i) {
     in.need_line("an element");
-    const Index place = in.place(),
+    const Index place = in.location(),
                 id = in.integer("an element id counted like the nodes", state.base + i, state.base + i);
     read_cell_nodes(in, facts(header.shape).nodes, state.base, state.mesh);
     const int region = read_region(in, header.attributes);
@@ -90,7 +90,8 @@ inline void read_faces(TextReader& in, State& state) {
   const CellShape shape = state.is_second_order ? CellShape::triangle6 : CellShape::triangle3;
   for (Index i = 0; i < count; ++i) {
     in.need_line("a face");
-    const Index place = in.place(), id = in.integer("a face id counted like the nodes", state.base + i, state.base + i);
+    const Index place = in.location(),
+                id = in.integer("a face id counted like the nodes", state.base + i, state.base + i);
     read_cell_nodes(in, facts(shape).nodes, state.base, state.mesh);
     const auto marker = markers == 0 ? 0 : static_cast<int>(in.integer("a boundary marker", -max_int, max_int));
     for (int n = 0; n < 2 && !in.rest().empty(); ++n) in.integer("a neighbour", -1, max_int);

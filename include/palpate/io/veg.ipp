@@ -109,7 +109,7 @@ inline void Parser::read_elements() {
                                              std::min(any_size, static_cast<std::size_t>(max_int) * 9));
   for (Index i = 0; i < header.count; ++i) {
     lines_.need_line("an element");
-    const Index place = in().place(), id = elements_.read(in(), "an element id");
+    const Index place = in().location(), id = elements_.read(in(), "an element id");
     read_cell_nodes(in(), facts(header.shape).nodes, base_, mesh_);
     for (Index a = 0; a < header.attributes; ++a) in().real("an attribute");
     in().end_line("an element");

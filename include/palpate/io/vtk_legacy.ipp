@@ -136,7 +136,7 @@ inline void LegacyParser::read_cells() {
   cells_.offsets.assign(1, 0);
   for (Index c = 0, left = total; c < count; ++c) {
     if (!numbers_.is_binary) in_.need_more("a cell");
-    cells_.places.push_back(in_.place());
+    cells_.places.push_back(in_.location());
     const Index nodes = numbers_.integer(type, "a number of nodes of a cell", 0, max_int);
     if (nodes >= left)
       in_.refuse(SetupErrorKind::index_out_of_range, {total, " numbers in CELLS"},
@@ -174,7 +174,7 @@ inline void LegacyParser::read_offsets() {
   const NumberType& node_type = read_array_head("CONNECTIVITY");
   for (std::size_t c = 1; c < cells_.offsets.size(); ++c) {
     if (!numbers_.is_binary && cells_.offsets[c] > cells_.offsets[c - 1]) in_.need_more("a node");
-    cells_.places.push_back(in_.place());
+    cells_.places.push_back(in_.location());
     for (Index a = cells_.offsets[c - 1]; a < cells_.offsets[c]; ++a) add_node(node_type);
   }
   numbers_.end("the nodes of the cells");

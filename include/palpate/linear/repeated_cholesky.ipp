@@ -72,7 +72,7 @@ class FrontFactorisation {
   }
 
   /// Refers to the values of a matrix with the analysed pattern; they must stay valid until elimination is done.
-  void take(const SparseLower& lower) noexcept { system_.take(lower); }
+  void refer_to(const SparseLower& lower) noexcept { system_.refer_to(lower); }
 
   /// Eliminates all fronts; returns false when a pivot fails. No allocation.
   bool try_eliminate() noexcept {
@@ -121,7 +121,7 @@ PALPATE_INLINE RepeatedCholesky::RepeatedCholesky(CholeskyAnalysis analysis, con
 PALPATE_INLINE RepeatedCholesky::~RepeatedCholesky() = default;
 
 PALPATE_INLINE bool RepeatedCholesky::factorise(const SparseLower& lower) noexcept {
-  factor_->factorisation.take(lower);
+  factor_->factorisation.refer_to(lower);
   ready_ = factor_->factorisation.try_eliminate();
   if (ready_ && factor_->single) factor_->single->copy(factor_->values.data());
   return ready_;

@@ -52,7 +52,7 @@ PALPATE_INLINE SparseCholesky::SparseCholesky(detail::CholeskyAnalysis analysis,
                         "the sparse factor");
   auto made = allocate(analysis, schur != nullptr);
   detail::FrontSystem system(analysis.tree(), made->values.data(), pivot_threshold);
-  system.take(lower);
+  system.refer_to(lower);
   detail::ParallelFronts fronts(system, made->fronts, analysis.pack_size(), limits);
   fronts.run();
   const detail::Front* const last = made->fronts > 0 ? &analysis.tree().fronts[made->fronts - 1] : nullptr;

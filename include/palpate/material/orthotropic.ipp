@@ -117,14 +117,14 @@ namespace detail {
 /// A rotation whose first column is the direction of `along`. The second column is perpendicular to it and to the
 /// coordinate axis that forms the largest angle with it.
 inline Matrix3 axes_along(const Vector3& along) noexcept {
-  int far = 0;
+  int farthest_axis = 0;
   for (int i = 1; i < 3; ++i)
-    if (std::abs(along[i]) < std::abs(along[far])) far = i;
-  const int next = (far + 1) % 3, last = (far + 2) % 3;
+    if (std::abs(along[i]) < std::abs(along[farthest_axis])) farthest_axis = i;
+  const int next = (farthest_axis + 1) % 3, last = (farthest_axis + 2) % 3;
   const double across = std::hypot(along[next], along[last]);
   const Vector3 first = along / along.norm();
   Vector3 second;
-  second[far] = 0.0;
+  second[farthest_axis] = 0.0;
   second[next] = along[last] / across;
   second[last] = -along[next] / across;
   const Vector3 third = cross(first, second);

@@ -102,7 +102,7 @@ OriginalIds original_ids(const Admitted<E>& admitted) {
 }
 
 /// A mesh during admission. `repair_and_enforce` fills the maps.
-struct CandidateMesh {
+struct MeshToAdmit {
   MeshEdit mesh;
   ShapeOfElement shape_of;
   std::vector<NodeId>& node_map;
@@ -114,7 +114,7 @@ struct CandidateMesh {
 void enforce(const MeshDiagnosis& d, const AdmissionPolicy& policy);
 
 /// Checks the groups, makes all repairs that the policy allows and refuses the remaining defects.
-void repair_and_enforce(CandidateMesh& candidate, const AdmissionPolicy& policy);
+void repair_and_enforce(MeshToAdmit& candidate, const AdmissionPolicy& policy);
 
 }  // namespace detail
 
@@ -133,8 +133,8 @@ Admitted<E> admit(const M& view, const AdmissionPolicy& policy = {}, const std::
   if (!result.diagnosis.complete) detail::enforce(result.admitted, policy);  // refuses
   detail::require_unit_fibres(view);
   result.mesh = copy_mesh<E>(view, group_names);
-  detail::CandidateMesh candidate{detail::mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map,
-                                  result.element_map, result.admitted};
+  detail::MeshToAdmit candidate{detail::mesh_edit(result.mesh), detail::shape_of_element<E>, result.node_map,
+                                result.element_map, result.admitted};
   detail::repair_and_enforce(candidate, policy);
   result.mesh.elements.resize(static_cast<std::size_t>(candidate.mesh.element_count));
   return result;

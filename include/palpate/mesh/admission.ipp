@@ -142,14 +142,14 @@ inline void require_valid_groups(const MeshRef& mesh) {
   }
 }
 
-inline void apply_node_map(CandidateMesh& work, const std::vector<NodeId>& map) {
+inline void apply_node_map(MeshToAdmit& work, const std::vector<NodeId>& map) {
   renumber_nodes(work.mesh, map);
   for (NodeId& i : work.node_map)
     if (i >= 0) i = map[static_cast<std::size_t>(i)];
 }
 
 /// Welds coincident nodes. Returns whether there were any.
-inline bool weld(CandidateMesh& work, const MeshThresholds& thresholds) {
+inline bool weld(MeshToAdmit& work, const MeshThresholds& thresholds) {
   const CoincidentNodes coincident = coincident_nodes(work.mesh.ref(), thresholds.coincidence);
   std::vector<NodeId> map(coincident.representative.size());
   NodeId next = 0;
@@ -163,19 +163,19 @@ inline bool weld(CandidateMesh& work, const MeshThresholds& thresholds) {
 }
 
 /// -1 inverted, 0 flat, 1 sound.
-inline int orientation_of(const CandidateMesh& work, Index e, const MeshThresholds& thresholds) noexcept {
+inline int orientation_of(const MeshToAdmit& work, Index e, const MeshThresholds& thresholds) noexcept {
   return orientation(work.shape_of(flat(work.mesh.positions), work.mesh.nodes_of(e)), thresholds);
 }
 
 /// `map`: the new number of every element, -1 for those to drop.
-inline void apply_element_map(CandidateMesh& work, const std::vector<Index>& map) {
+inline void apply_element_map(MeshToAdmit& work, const std::vector<Index>& map) {
   renumber_elements(work.mesh, map);
   for (Index& e : work.element_map)
     if (e >= 0) e = map[static_cast<std::size_t>(e)];
 }
 
 /// Drops flat and repeated elements if the policy requires it. Returns whether there were any.
-inline bool drop_elements(CandidateMesh& work, const AdmissionPolicy& policy) {
+inline bool drop_elements(MeshToAdmit& work, const AdmissionPolicy& policy) {
   if (policy.duplicate_elements != Admission::repair && policy.degenerate != Admission::repair) return false;
   const std::vector<Index> first = first_equal_elements(work.mesh.ref());
   std::vector<Index> map(first.size());
@@ -191,7 +191,7 @@ inline bool drop_elements(CandidateMesh& work, const AdmissionPolicy& policy) {
 }
 
 /// Drops the elements of all pieces but the one of most elements. Returns whether there were any.
-inline bool keep_largest_piece(CandidateMesh& work) {
+inline bool keep_largest_piece(MeshToAdmit& work) {
   const MeshComponents components = connected_components(work.mesh.ref());
   if (components.count < 2) return false;
   const auto piece_of = [&](Index e) {
@@ -209,7 +209,7 @@ inline bool keep_largest_piece(CandidateMesh& work) {
 }
 
 /// Reverses the orientation of inverted elements. Returns whether there were any.
-inline bool reverse_inverted(CandidateMesh& work, const MeshThresholds& thresholds) {
+inline bool reverse_inverted(MeshToAdmit& work, const MeshThresholds& thresholds) {
   std::vector<Index> inverted;
   for (Index e = 0; e < work.mesh.element_count; ++e)
     if (orientation_of(work, e, thresholds) < 0) inverted.push_back(e);
@@ -218,7 +218,7 @@ inline bool reverse_inverted(CandidateMesh& work, const MeshThresholds& threshol
 }
 
 /// Drops nodes that no element uses, also those left over by other repairs. Returns whether there were any.
-inline bool drop_orphans(CandidateMesh& work) {
+inline bool drop_orphans(MeshToAdmit& work) {
   const std::vector<char> used = used_nodes(work.mesh.ref());
   std::vector<NodeId> map(used.size(), -1);
   NodeId next = 0;
@@ -231,7 +231,7 @@ inline bool drop_orphans(CandidateMesh& work) {
 
 /// Makes all repairs that the policy allows, ordered so that each also handles the results of the previous ones.
 /// Returns whether anything was changed.
-inline bool repair(CandidateMesh& work, const AdmissionPolicy& policy) {
+inline bool repair(MeshToAdmit& work, const AdmissionPolicy& policy) {
   bool changed = false;
   if (policy.duplicate_nodes == Admission::repair) changed = weld(work, policy.thresholds) || changed;
   changed = drop_elements(work, policy) || changed;
@@ -241,7 +241,7 @@ inline bool repair(CandidateMesh& work, const AdmissionPolicy& policy) {
   return changed;
 }
 
-PALPATE_INLINE void repair_and_enforce(CandidateMesh& candidate, const AdmissionPolicy& policy) {
+PALPATE_INLINE void repair_and_enforce(MeshToAdmit& candidate, const AdmissionPolicy& policy) {
   require_valid_groups(candidate.mesh.ref());
   candidate.node_map.resize(candidate.mesh.positions.size());
   candidate.element_map.resize(static_cast<std::size_t>(candidate.mesh.element_count));

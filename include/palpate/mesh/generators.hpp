@@ -52,7 +52,7 @@ struct BoxGrid {
   std::array<NodeId, 3> cells;
 
   NodeId node(std::array<NodeId, 3> i) const noexcept { return i[0] + (cells[0] + 1) * (i[1] + (cells[1] + 1) * i[2]); }
-  std::array<NodeId, 3> place(NodeId n) const noexcept;
+  std::array<NodeId, 3> indices(NodeId n) const noexcept;
   /// Corner of a cell; bit a of `corner` selects the far side along axis a.
   NodeId corner(std::array<NodeId, 3> cell, unsigned corner) const noexcept;
 };
@@ -73,7 +73,7 @@ void add_box_groups(Mesh<E>& mesh, const BoxGrid& grid) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (NodeId side : {0, 1})
       add_boundary_group(mesh, boundary, std::string(1, "xyz"[axis]) + (side == 0 ? '0' : '1'),
-                         [&](NodeId node) { return grid.place(node)[axis] == (side == 0 ? 0 : grid.cells[axis]); });
+                         [&](NodeId node) { return grid.indices(node)[axis] == (side == 0 ? 0 : grid.cells[axis]); });
 }
 
 /// Number of cells along an axis. Refuses coordinates that are not ascending.

@@ -17,7 +17,7 @@ PALPATE_INLINE void add_oriented(Mesh<Tet4>& mesh, NodeId a, NodeId b, NodeId c,
   mesh.elements.push_back(inverted ? Mesh<Tet4>::Connectivity{a, b, d, c} : Mesh<Tet4>::Connectivity{a, b, c, d});
 }
 
-PALPATE_INLINE std::array<NodeId, 3> BoxGrid::place(NodeId n) const noexcept {
+PALPATE_INLINE std::array<NodeId, 3> BoxGrid::indices(NodeId n) const noexcept {
   return {n % (cells[0] + 1), n / (cells[0] + 1) % (cells[1] + 1), n / ((cells[0] + 1) * (cells[1] + 1))};
 }
 

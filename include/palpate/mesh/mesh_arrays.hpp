@@ -37,7 +37,7 @@ class MeshArrays {
   requires(Outlives<Positions>&& Outlives<Connectivity>&& Outlives<Regions>)
       MeshArrays(Positions&& positions, Connectivity&& connectivity, Regions&& regions = {})
       : positions_(positions), connectivity_(connectivity), regions_(regions) {
-    check();
+    require_complete();
   }
   template <class Positions, class Connectivity, class Regions = std::span<const int>>
   requires(!(Outlives<Positions> && Outlives<Connectivity> && Outlives<Regions>))
@@ -90,7 +90,7 @@ class MeshArrays {
   const Group* find_group(std::string_view name) const noexcept { return groups_.find(name); }
 
  private:
-  void check() {
+  void require_complete() {
     if (positions_.size() % 3 != 0)
       raise(SetupErrorKind::bad_argument, "positions holds " + std::to_string(positions_.size()) + " numbers",
             "It needs x y z per node");

@@ -15,7 +15,8 @@ class UnitFindings {
   explicit UnitFindings(bool refuse) noexcept : refuse_(refuse) {}
 
   /// Checks that a value is within bounds; `region`: its number, or -1.
-  void check(double value, double least, double most, const std::string& what, const char* question, int region = -1) {
+  void compare(double value, double least, double most, const std::string& what, const char* question,
+               int region = -1) {
     if (value >= least && value <= most) return;
     SetupProblem p;
     p.kind = SetupErrorKind::suspicious_units;
@@ -49,20 +50,20 @@ PALPATE_INLINE void report_units(const UnitCheck& given, bool refuse, SetupRepor
   double least = infinity;
   for (std::size_t m = 0; m < given.elasticities.size(); ++m) {
     const double modulus = youngs_modulus(given.elasticities[m]);
-    found.check(modulus, softest, infinity,
-                (by_region ? region(m) : std::string("an element")) + " has a Young's modulus of", " Pa: kPa or MPa?",
-                by_region ? static_cast<int>(m) : -1);
+    found.compare(modulus, softest, infinity,
+                  (by_region ? region(m) : std::string("an element")) + " has a Young's modulus of", " Pa: kPa or MPa?",
+                  by_region ? static_cast<int>(m) : -1);
     least = std::min(least, modulus);
     if (!found.text().empty()) break;
   }
-  found.check(least, 0.0, stiff, "the softest material has a Young's modulus of",
-              " Pa: is it in Pa? No touch bends it");
+  found.compare(least, 0.0, stiff, "the softest material has a Young's modulus of",
+                " Pa: is it in Pa? No touch bends it");
   for (std::size_t r = 0; r < given.densities.size(); ++r)
     if (given.densities[r] > 0.0)
-      found.check(given.densities[r], lightest, densest, region(r) + " has a density of", " kg/m^3: g/cm^3?",
-                  static_cast<int>(r));
-  found.check(given.gravity, 0.0, strongest, "gravity is", " m/s^2: mm/s^2?");
-  found.check(given.touch_radius, 0.0, largest, "the tool has a radius of", " m: millimetres?");
+      found.compare(given.densities[r], lightest, densest, region(r) + " has a density of", " kg/m^3: g/cm^3?",
+                    static_cast<int>(r));
+  found.compare(given.gravity, 0.0, strongest, "gravity is", " m/s^2: mm/s^2?");
+  found.compare(given.touch_radius, 0.0, largest, "the tool has a radius of", " m: millimetres?");
   if (found.text().empty()) return;
   std::string all = found.text();
   for (const auto& [flag, remark] : report.remarks)

@@ -7,6 +7,7 @@
 #include <palpate/model/policies.hpp>
 #include <palpate/model/static/linear_tissue.hpp>
 
+#include <type_traits>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -38,10 +39,13 @@ template <class E, class M, class Solver>
 struct TissueOf : ModelArguments<E, M> {
   using Type = StaticTissue<E, M, Solver>;
 };
+/// As an argument: g++ 12 does not accept an alias template alone.
 template <class E, class M, class Solver>
-requires requires {
-  typename SolverTraits<Solver>::template Tissue<E, M>;
-}
+concept NamesTissue = requires {
+  typename std::type_identity<typename SolverTraits<Solver>::template Tissue<E, M>>;
+};
+template <class E, class M, class Solver>
+requires NamesTissue<E, M, Solver>
 struct TissueOf<E, M, Solver> : ModelArguments<E, M> {
   using Type = typename SolverTraits<Solver>::template Tissue<E, M>;
 };

@@ -231,8 +231,9 @@ Violations range_laws(const M& m) {
   Random random(1948);
   for (int k = 0; k < 64; ++k) {
     const Tensor3<double> f = random_deformation(m, random), r = tensor3(random_rotation(random));
-    const Tensor3<double> near = r * plus_identity(0.01 * plus_identity(f, -1.0), 1.0);
-    expect_true(v, "is within its range near rest", !palpate::detail::is_beyond_range(m, near), detail::name_of(k));
+    const Tensor3<double> near_rest = r * plus_identity(0.01 * plus_identity(f, -1.0), 1.0);
+    expect_true(v, "is within its range near rest", !palpate::detail::is_beyond_range(m, near_rest),
+                detail::name_of(k));
     if constexpr (palpate::detail::RangedByVolume<M>) {
       const double scale = std::cbrt(1.001 * m.range_volume_ratio() / determinant(f));
       expect_true(v, "is within its range above its volume ratio", !m.is_beyond_range(scale * f), detail::name_of(k));

@@ -48,7 +48,7 @@ double residual(const Op& op, const VectorX& b, const VectorX& x) {
 
 /// "report is truthful": a reported residual equals the measured one, convergence is reported only for a finite
 /// solution that satisfies the equations, and a direct solver reports no iterations.
-Violations report_laws(const SolveReport& report, double relative_residual, bool small, const SolverClaims& claims,
+Violations report_laws(const SolveReport& report, double relative_residual, bool is_small, const SolverClaims& claims,
                        const std::string& name);
 
 /// Laws of a prepared solver of the system `op`: "size"; for several loads "solves" (backward error within the claim),
@@ -107,14 +107,15 @@ Violations accuracy_laws(const Op& op, S& solver, double bound) {
   return v;
 }
 
-inline Violations report_laws(const SolveReport& report, double relative_residual, bool small,
+inline Violations report_laws(const SolveReport& report, double relative_residual, bool is_small,
                               const SolverClaims& claims, const std::string& name) {
   Violations v;
   const double rounding = 1e-15;
   if (!std::isnan(report.relative_residual))
     expect_at_most(v, "report is truthful", std::abs(report.relative_residual - relative_residual),
                    0.5 * relative_residual + rounding, name + ": stated residual");
-  expect_true(v, "report is truthful", !report.converged || small, name + ": converged, but the residual is not small");
+  expect_true(v, "report is truthful", !report.converged || is_small,
+              name + ": converged, but the residual is not small");
   expect_true(v, "converges", report.converged, name);
   if (claims.direct) expect_true(v, "report is truthful", report.iterations == 0, name + ": iterations");
   return v;

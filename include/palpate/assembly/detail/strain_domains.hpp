@@ -150,23 +150,23 @@ class StrainDomains {
       const PointGeometry<E>& g = geometry_[static_cast<std::size_t>(s.element)];
       for (int a = 0; a < E::nodes; ++a)
         for (int i = 0; i < 3; ++i)
-          gradient_[place_of(mesh.element_node(s.element, a))][i] += share * g.volume * g.gradient.coeff(a, i);
+          gradient_[index_of(mesh.element_node(s.element, a))][i] += share * g.volume * g.gradient.coeff(a, i);
     }
-    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) place_of(node_[a]) = unused;
+    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) index_of(node_[a]) = unused;
   }
 
   /// Appends the nodes of a domain, and records the position of every node.
   void number_nodes(const Mesh<E>& mesh, std::span<const Share> shares) {
     for (const Share& s : shares)
       for (const NodeId j : mesh.elements[static_cast<std::size_t>(s.element)]) {
-        if (place_of(j) != unused) continue;
-        place_of(j) = 0;
+        if (index_of(j) != unused) continue;
+        index_of(j) = 0;
         node_.push_back(j);
       }
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(node_start_.back()), node_.end());
-    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) place_of(node_[a]) = a;
+    for (std::size_t a = node_start_.back(); a < node_.size(); ++a) index_of(node_[a]) = a;
   }
-  std::size_t& place_of(NodeId node) noexcept { return place_[static_cast<std::size_t>(node)]; }
+  std::size_t& index_of(NodeId node) noexcept { return place_[static_cast<std::size_t>(node)]; }
 
   static constexpr auto unused = static_cast<std::size_t>(-1);
   std::vector<std::size_t> node_start_{0}, element_start_{0};
@@ -226,7 +226,7 @@ class DomainElasticity {
       double volume = 0.0;
       for (const NodeId e : domain.elements) {
         const double v = constant_geometry(body.mesh, Index{e}).volume;
-        sum += v * materials[place(body.material_of(e), domain.part)];
+        sum += v * materials[index(body.material_of(e), domain.part)];
         volume += v;
       }
       elasticity_.push_back(sum / volume);
@@ -238,7 +238,7 @@ class DomainElasticity {
   const Matrix6& operator()(Index d, const StrainDomain& domain) const noexcept;
 
  private:
-  static std::size_t place(std::size_t material, StrainPart part) noexcept;
+  static std::size_t index(std::size_t material, StrainPart part) noexcept;
 
   bool by_domain_ = false;
   std::vector<Matrix6> elasticity_;  // of every domain, or both parts of every region
@@ -246,10 +246,10 @@ class DomainElasticity {
 
 inline const Matrix6& DomainElasticity::operator()(Index d, const StrainDomain& domain) const noexcept {
   return elasticity_[by_domain_ ? static_cast<std::size_t>(d)
-                                : place(static_cast<std::size_t>(domain.region), domain.part)];
+                                : index(static_cast<std::size_t>(domain.region), domain.part)];
 }
 
-inline std::size_t DomainElasticity::place(std::size_t material, StrainPart part) noexcept {
+inline std::size_t DomainElasticity::index(std::size_t material, StrainPart part) noexcept {
   return 2 * material + (part == StrainPart::volumetric ? 1 : 0);
 }
 

@@ -156,7 +156,7 @@ class Candidates {
   static constexpr double begin_used = 0.6, end_used = 0.8;  // parts of the margin while the next list is built
 
   inline static const Vector3& expected_position(const ContactSurface& surface, int vertex) noexcept;
-  inline static Vector3 expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept;
+  inline static Vector3 expected_position(const ContactSurface& surface, const ContactSample& sample) noexcept;
   inline static double needed(const ContactTool& tool) noexcept;
   bool is_pinned(const ContactSample& sample) const noexcept;
   int triangle_of(const ContactSurface& surface, int sample) const noexcept;
@@ -195,7 +195,7 @@ class Candidates {
   inline static Vector3 place_by_vertices(const TissueView& tissue, SurfaceDisplacement& displacement,
                                           const ContactSample& sample) noexcept;
   struct Bound {
-    Vector3 place;       ///< without the half-space [m]
+    Vector3 position;    ///< without the half-space [m]
     double bulge = 0.0;  ///< how far outward of it the point may be [m]
   };
   Bound bound(const TissueView& tissue, SurfaceDisplacement& displacement, int sample) const noexcept;

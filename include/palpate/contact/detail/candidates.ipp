@@ -58,7 +58,7 @@ inline const Vector3& Candidates::expected_position(const ContactSurface& surfac
   return surface.expected().is_known() ? surface.expected().position(vertex) : surface.position(vertex);
 }
 
-inline Vector3 Candidates::expected_place(const ContactSurface& surface, const ContactSample& sample) noexcept {
+inline Vector3 Candidates::expected_position(const ContactSurface& surface, const ContactSample& sample) noexcept {
   return sample.weights[0] * expected_position(surface, sample.vertices[0]) +
          sample.weights[1] * expected_position(surface, sample.vertices[1]) +
          sample.weights[2] * expected_position(surface, sample.vertices[2]);

@@ -168,9 +168,9 @@ PALPATE_INLINE bool Candidates::advance(const TissueView& tissue, std::span<cons
       list.range[t] = needed(tool) + margin * tool.radius;
       list.built[t] = travel(t);
     }
-    const double near = tool.radius + tool.core_radius() + list.range[t] + search.reach;
+    const double visited_radius = tool.radius + tool.core_radius() + list.range[t] + search.reach;
     const auto visit = [&](int triangle) { examine(tissue, tool, triangle, search, list, displacement); };
-    if (!bvh.visit_next_near(search.descent, tool.middle(), near, visit)) continue;
+    if (!bvh.visit_next_near(search.descent, tool.middle(), visited_radius, visit)) continue;
     ++search.leaves;
     return true;
   }
@@ -183,9 +183,9 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
                                         const Search& search, List& list, SurfaceDisplacement& displacement) noexcept {
   const ContactSurface& surface = tissue.contact_surface();
   const double touching = tool.radius + tool.core_radius() + search.reach;  // distance for a least gap of zero
-  const double near = touching + list.range[search.tool];
+  const double listed_distance = touching + list.range[search.tool];
   const auto squared_distance = [&](const ContactSample& sample) {
-    return (expected_place(surface, sample) - tool.middle()).squaredNorm();
+    return (expected_position(surface, sample) - tool.middle()).squaredNorm();
   };
   Candidate c;
   c.triangle = triangle;
@@ -196,7 +196,7 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
   if (end - first > 8) {  // in a leaf whose other triangles are near
     Box box;
     for (const int v : surface.triangle(triangle)) box.include(expected_position(surface, v));
-    if (box.squared_distance(tool.middle()) > near * near) return;
+    if (box.squared_distance(tool.middle()) > listed_distance * listed_distance) return;
     if (subfacet_ && search.reach > 0.25 * tool.radius && displacement.has_loads()) {  // where its vertices are now
       Box moved;
       double shown = 0.0;
@@ -205,13 +205,13 @@ PALPATE_INLINE void Candidates::examine(const TissueView& tissue, const ContactT
         if (subfacet_->is_known(v)) shown = std::max(shown, displacement.shown(*subfacet_, v).norm());
       }
       const double bulge = displacement.largest_bulge(tissue, *subfacet_, samples_, surface.normal(triangle));
-      const double within = near - search.reach + shown + bulge;
+      const double within = listed_distance - search.reach + shown + bulge;
       if (moved.squared_distance(tool.middle()) > within * within) return;
     }
   }
   for (int sample = first; sample < end && samples_.level_of(sample) >= level; ++sample) {
     const double squared = squared_distance(samples_[sample]);
-    if (!(squared <= near * near)) continue;
+    if (!(squared <= listed_distance * listed_distance)) continue;
     c.sample = sample;
     c.generation = 0;
     c.gap = std::sqrt(squared) - touching;
@@ -235,11 +235,11 @@ PALPATE_INLINE void Candidates::consider(const TissueView& tissue, const Contact
   CandidateList& points = list.points;
   double& range = list.range[search.tool];
   const double known = search.in_parts ? known_gap(c.tool, c.sample) : -infinity;
-  const bool far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && points.count() < list.room;
+  const bool is_far = c.gap > 0.0 && search.reach <= 0.5 * tool.radius && points.count() < list.room;
   c.gap = std::max(c.gap, known);
   c.evaluated = false;
   c.seen = travel(search.tool);
-  if (!(far || known > -infinity || raise_least_gap(tissue, tool, displacement, c) > -infinity))
+  if (!(is_far || known > -infinity || raise_least_gap(tissue, tool, displacement, c) > -infinity))
     place(c, position(tissue, displacement, c), tool);
   if (!(c.gap <= range) || (list.kept > 0 && points.find(c.tool, c.sample) >= 0)) return;
   c.facing = !c.evaluated || faces_sphere(tissue, displacement, c);

@@ -41,9 +41,9 @@ class ComplementarityProblem {
   /// Values of rows that stay are kept.
   void resize(int rows) noexcept { rows_ = rows; }
   /// Compliance [m/N].
-  double& w(int i, int j) noexcept { return w_[place(i, j)]; }
+  double& w(int i, int j) noexcept { return w_[index(i, j)]; }
   std::size_t stride() const noexcept { return stride_; }
-  double w(int i, int j) const noexcept { return w_[place(i, j)]; }
+  double w(int i, int j) const noexcept { return w_[index(i, j)]; }
 
   /// False when the pivot limit was reached: lambda is then >= 0 and its energy is below that of zero force, but some
   /// gaps are still negative. Also false, with zero force, when W or b is not finite.
@@ -56,7 +56,7 @@ class ComplementarityProblem {
   double gap(int i) const noexcept { return gap_[at(i)] - relaxation * w(i, i) * lambda[at(i)]; }
 
  private:
-  std::size_t place(int i, int j) const noexcept {
+  std::size_t index(int i, int j) const noexcept {
     return static_cast<std::size_t>(i) + stride_ * static_cast<std::size_t>(j);
   }
   static constexpr int width = 4;  // columns of the factor that are worked on together

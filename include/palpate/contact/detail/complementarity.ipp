@@ -170,7 +170,7 @@ PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
   std::size_t count = 0;
   for (int p = 0; p < order_count_; ++p) {
     const int j = order_[at(p)];
-    const double* const column = &w_[place(0, j)];
+    const double* const column = &w_[index(0, j)];
     const double force = lambda[at(j)];
     gap[j] += relaxation * column[j] * force;
     columns[count] = column;
@@ -184,7 +184,7 @@ PALPATE_INLINE void ComplementarityProblem::update_gaps() noexcept {
 
 /// The factor from row p, of the four columns from q on.
 inline std::array<const double*, 4> ComplementarityProblem::columns(int p, int q) const noexcept {
-  return {&factor_[place(p, q)], &factor_[place(p, q + 1)], &factor_[place(p, q + 2)], &factor_[place(p, q + 3)]};
+  return {&factor_[index(p, q)], &factor_[index(p, q + 1)], &factor_[index(p, q + 2)], &factor_[index(p, q + 3)]};
 }
 
 /// Solves W_aa answer = -b_a for answer_, in the order of order_. A pivot that is not positive, or lost to
@@ -198,7 +198,7 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
   for (int first = 0; first < m; first += width) {
     const int end = std::min(first + width, m);
     for (int q = first; q < end; ++q) {
-      const double* const column = &factor_[place(0, q)];
+      const double* const column = &factor_[index(0, q)];
       const double value = x[q] *= column[q];
       for (int p = q + 1; p < end; ++p) x[p] -= value * column[p];
     }
@@ -206,7 +206,7 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
       add_columns(x + end, columns(end, first), {-x[first], -x[first + 1], -x[first + 2], -x[first + 3]}, m - end);
   }
   for (int p = m - 1; p >= 0; --p) {
-    const double* const column = &factor_[place(0, p)];
+    const double* const column = &factor_[index(0, p)];
     const int n = m - p - 1;
     x[p] = (x[p] - dot(column + p + 1, x + p + 1, n)) * column[p];
   }
@@ -216,26 +216,26 @@ PALPATE_INLINE void ComplementarityProblem::solve_active() noexcept {
 PALPATE_INLINE void ComplementarityProblem::factor_all() noexcept {
   const int m = factored_ = order_count_;
   for (int q = 0; q < m; ++q) {
-    const double* const from = &w_[place(0, order_[at(q)])];
-    double* const column = &factor_[place(0, q)];
+    const double* const from = &w_[index(0, order_[at(q)])];
+    double* const column = &factor_[index(0, q)];
     for (int p = q; p < m; ++p) column[p] = from[order_[at(p)]];
     column[q] *= 1.0 + relaxation;
   }
   for (int first = 0; first < m; first += width) {
     const int end = std::min(first + width, m);
     for (int q = first; q < end; ++q) {
-      double* const column = &factor_[place(0, q)];
+      double* const column = &factor_[index(0, q)];
       const double scale = column[q] = inverse_root(column[q], order_[at(q)]);
       for (int p = q + 1; p < m; ++p) column[p] *= scale;
       for (int k = q + 1; k < end; ++k) {
-        double* const other = &factor_[place(0, k)];
+        double* const other = &factor_[index(0, k)];
         const double value = column[k];
         for (int p = k; p < m; ++p) other[p] -= value * column[p];
       }
     }
     for (int k = end; k < m; ++k) {
       const auto from = columns(k, first);
-      add_columns(&factor_[place(k, k)], from, {-*from[0], -*from[1], -*from[2], -*from[3]}, m - k);
+      add_columns(&factor_[index(k, k)], from, {-*from[0], -*from[1], -*from[2], -*from[3]}, m - k);
     }
   }
 }
@@ -247,13 +247,13 @@ PALPATE_INLINE void ComplementarityProblem::factor_row(int p) noexcept {
   for (int q = 0; q < p; ++q) row[q] = w(order_[at(q)], i);
   double pivot = (1.0 + relaxation) * w(i, i);
   for (int q = 0; q < p; ++q) {
-    const double* const column = &factor_[place(0, q)];
+    const double* const column = &factor_[index(0, q)];
     const double value = row[q] *= column[q];
     pivot -= value * value;
     for (int k = q + 1; k < p; ++k) row[k] -= value * column[k];
   }
-  for (int q = 0; q < p; ++q) factor_[place(p, q)] = row[q];
-  factor_[place(p, p)] = inverse_root(pivot, i);
+  for (int q = 0; q < p; ++q) factor_[index(p, q)] = row[q];
+  factor_[index(p, p)] = inverse_root(pivot, i);
 }
 
 }}}  // namespace palpate::detail

@@ -259,9 +259,9 @@ PALPATE_ALWAYS_INLINE void add_half_space_group(const double* loads, std::size_t
   const Numbers edges = p[half_space_length] + number(half_space_length), square = edges * edges, squared = dot(d, d);
   if (!any(squared < 4.0 * square)) return;
   // Nothing of loads at the same place or on other bodies.
-  const Numbers near = (rounding * rounding) * square;
-  const auto apart = (near < squared) & (abs(number(half_space_body) - p[half_space_body]) < Numbers(0.5));
-  const Numbers distance = sqrt(max(squared, near)), per_length = 1.0 / distance;
+  const Numbers least_square = (rounding * rounding) * square;
+  const auto apart = (least_square < squared) & (abs(number(half_space_body) - p[half_space_body]) < Numbers(0.5));
+  const Numbers distance = sqrt(max(squared, least_square)), per_length = 1.0 / distance;
   const ContactVector<Numbers> normal =
       in_all_lanes({p[half_space_normal], p[half_space_normal + 1], p[half_space_normal + 2]});
   const ContactVector<Numbers> other = load_half_space<half_space_normal>(loads, group);

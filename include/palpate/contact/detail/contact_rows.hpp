@@ -91,7 +91,7 @@ class ContactRows {
   /// forces. False when a solution was stopped early.
   bool slide() noexcept;
   /// Whether the last turn of slide changed the normal forces by less than a hundredth of the largest.
-  bool has_settled() const noexcept { return !(alternation_change_ > unsettled); }
+  bool has_converged() const noexcept { return !(alternation_change_ > unconverged_change); }
   bool has_friction() const noexcept { return friction_.acts(); }
   /// Sum of force times penetration without contact force, over the rows of a tool: twice the energy of its contact, if
   /// no other tool presses [J].
@@ -130,7 +130,7 @@ class ContactRows {
   static constexpr int alternation_work = 25'000;                          // turns times rows^2
   static constexpr int full_alternations = 6;  // then half steps: with much friction, full ones may go in a circle
   static constexpr double alternation_tolerance = 1e-4;
-  static constexpr double unsettled = 0.01;
+  static constexpr double unconverged_change = 0.01;
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   inline bool sticks(const Candidate& c) const noexcept;
   inline static void reach(const ContactTool& tool, const Candidate& c, Contact& row) noexcept;

@@ -81,7 +81,7 @@ PALPATE_INLINE void ContactRows::stick(std::span<const ContactTool> tools) noexc
   for (int i = 0; i < count_; ++i) {
     Candidate& c = *candidate_[at(i)];
     if (c.grasped || !(c.force > 0.0)) continue;
-    const bool slips = has_settled() && !(c.friction.norm() < slipping * friction_.coefficient() * c.force);
+    const bool slips = has_converged() && !(c.friction.norm() < slipping * friction_.coefficient() * c.force);
     const bool kept = sticks(c) && !slips;
     const ContactTool& tool = tools[at(c.tool)];
     if (!kept) c.anchor = tool.rotation.transpose() * (rows_[at(i)].point - tool.proxy);

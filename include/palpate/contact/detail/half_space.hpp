@@ -74,8 +74,8 @@ PALPATE_ALWAYS_INLINE double half_space_support(double distance, double normals)
     const double rest = 1.0 - t;
     return t <= 0.0 ? 1.0 : !(t < 1.0) ? 0.0 : rest * rest * rest * (1.0 + t * (3.0 + 6.0 * t));
   };
-  const double near = step(distance - 1.0);
-  return near > 0.0 ? near * step(-2.0 * normals) : 0.0;
+  const double nearness = step(distance - 1.0);
+  return nearness > 0.0 ? nearness * step(-2.0 * normals) : 0.0;
 }
 PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
   return half_space_support((p.position - q.position).norm() / (p.length + q.length), p.normal.dot(q.normal));

@@ -39,7 +39,7 @@ class PointLevels {
   };
   /// Divides the rows among the tools near the surface and limits their levels.
   void begin_tick(const ContactSamples& samples, const std::array<Size, maximum_tools>& sizes,
-                  const std::array<bool, maximum_tools>& near, const Limits& limits) noexcept;
+                  const std::array<bool, maximum_tools>& is_near, const Limits& limits) noexcept;
   int share(int tool) const noexcept { return share_[at(tool)]; }
   bool has_areas() const noexcept { return limits_.has_areas; }
   double level(int tool) const noexcept { return level_[at(tool)]; }

@@ -10,13 +10,13 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE void PointLevels::begin_tick(const ContactSamples& samples, const std::array<Size, maximum_tools>& sizes,
-                                            const std::array<bool, maximum_tools>& near,
+                                            const std::array<bool, maximum_tools>& is_near,
                                             const Limits& limits) noexcept {
   limits_ = limits;
   const bool has_areas = limits.has_areas;
   for (std::size_t t = 0; t < maximum_tools; ++t) {
     const auto [radius, scale] = sizes[t];
-    const bool begins = !(std::exchange(radius_[t], near[t] ? radius : 0.0) > 0.0);
+    const bool begins = !(std::exchange(radius_[t], is_near[t] ? radius : 0.0) > 0.0);
     if (!(radius > 0.0)) continue;
     const double last = samples.levels() - 1.0;
     const auto whole = [&](double spacing) { return std::round(samples.level_with(spacing)); };

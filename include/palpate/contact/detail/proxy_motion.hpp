@@ -76,7 +76,7 @@ class ProxyMotion {
   std::array<Ahead, maximum_tools> ahead_{};
   double longest_part_ = 1.0;  // of a step
   int restless_ticks_ = 0;     // in turn, that took a whole step and have not converged
-  int settled_ticks_ = 0;      // that converged with shorter steps
+  int converged_ticks_ = 0;    // that converged with shorter steps
   int reported_ticks_ = 0;     // that are still reported
   Pace pace_ = Pace::other;    // of all tools in the last tick
   int wait_ = first_wait;

@@ -138,16 +138,16 @@ PALPATE_INLINE bool ProxyMotion::end_tick(Tools tools, bool converged, bool pres
   });
   if (moves || !presses) {
     longest_part_ = 1.0;
-    restless_ticks_ = settled_ticks_ = 0;
+    restless_ticks_ = converged_ticks_ = 0;
     wait_ = first_wait;
   } else if (converged) {
     restless_ticks_ = 0;
-    if (longest_part_ < 1.0 && ++settled_ticks_ >= wait_) {
+    if (longest_part_ < 1.0 && ++converged_ticks_ >= wait_) {
       longest_part_ = std::min(1.0, 2.0 * longest_part_);
-      settled_ticks_ = 0;
+      converged_ticks_ = 0;
     }
   } else if (took_whole_step_ && ++restless_ticks_ >= patience) {
-    restless_ticks_ = settled_ticks_ = 0;
+    restless_ticks_ = converged_ticks_ = 0;
     longest_part_ = std::max(least_part, 0.5 * longest_part_);
     wait_ = std::min(2 * wait_, longest_wait);
   }

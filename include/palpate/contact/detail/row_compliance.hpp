@@ -63,7 +63,7 @@ class PointCompliance {
 
  private:
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  int take(const Candidates& points, int sample) noexcept;
+  int assign_slot(const Candidates& points, int sample) noexcept;
   void renew(const TissueView& tissue, const Candidates& points, int slot) noexcept;
   /// Out of line, so that the look-up is inlined.
   void compute(const TissueView& tissue, const Candidates& points, int p, int q, std::size_t pair) noexcept;

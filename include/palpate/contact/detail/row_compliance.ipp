@@ -34,7 +34,7 @@ PALPATE_INLINE int PointCompliance::slot_of(const TissueView& tissue, const Cand
                                             int hint) noexcept {
   if (hint < 0 || sample_[at(hint)] != sample) {
     const auto found = std::find(sample_.begin(), sample_.end(), sample);
-    hint = found != sample_.end() ? static_cast<int>(found - sample_.begin()) : take(points, sample);
+    hint = found != sample_.end() ? static_cast<int>(found - sample_.begin()) : assign_slot(points, sample);
   }
   if (version_[at(hint)] == 0 || of_state_[at(hint)] != revision_) renew(tissue, points, hint);
   used_[at(hint)] = rows_;
@@ -63,7 +63,7 @@ PALPATE_INLINE void PointCompliance::compute(const TissueView& tissue, const Can
     block += at_rest;
 }
 
-PALPATE_INLINE int PointCompliance::take(const Candidates& points, int sample) noexcept {
+PALPATE_INLINE int PointCompliance::assign_slot(const Candidates& points, int sample) noexcept {
   const int capacity = static_cast<int>(sample_.size());
   while (used_[at(next_)] == rows_) next_ = next_ + 1 == capacity ? 0 : next_ + 1;
   sample_[at(next_)] = sample;

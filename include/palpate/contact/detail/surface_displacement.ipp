@@ -129,7 +129,7 @@ PALPATE_INLINE Vector3 SurfaceDisplacement::without_half_space(const TissueView&
 /// Loads of less than a twentieth of the largest do not count for the directions: points at the rim of a deep print.
 PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue, const SubfacetCompliance& subfacet,
                                                        const ContactSamples& samples) noexcept {
-  constexpr double small = 0.05;
+  constexpr double small_part = 0.05;
   if (std::exchange(dent_stamp_, generation_) == generation_) return;
   dent_before_ = largest_dent_;
   pressed_normal_.setZero();
@@ -147,7 +147,7 @@ PALPATE_INLINE void SurfaceDisplacement::measure_dents(const TissueView& tissue,
   pressed_normal_.normalize();
   only_presses_ = true;
   for (const PointLoad& load : loads)
-    if (load.magnitude > small * largest)
+    if (load.magnitude > small_part * largest)
       only_presses_ = only_presses_ && -load.force.dot(load.point.normal) > aligned * load.magnitude &&
                       load.point.normal.dot(pressed_normal_) > aligned;
 }

@@ -54,14 +54,14 @@ struct RowTranspose {
   /// Entries of (a, b) selected by P0 ... P3 in every group of four: 0 ... 3 from a, 4 ... 7 from b.
   template <int P0, int P1, int P2, int P3, std::size_t... I>
   PALPATE_ALWAYS_INLINE static Vector pick(const Vector& a, const Vector& b, std::index_sequence<I...>) noexcept {
-    return __builtin_shufflevector(a, b, place<P0, P1, P2, P3>(static_cast<int>(I))...);
+    return __builtin_shufflevector(a, b, lane_index<P0, P1, P2, P3>(static_cast<int>(I))...);
   }
   template <int P0, int P1, int P2, int P3>
   PALPATE_ALWAYS_INLINE static Vector pick(const Vector& a, const Vector& b) noexcept {
     return pick<P0, P1, P2, P3>(a, b, std::make_index_sequence<W>{});
   }
   template <int P0, int P1, int P2, int P3>
-  static constexpr int place(int i) noexcept {
+  static constexpr int lane_index(int i) noexcept {
     constexpr Pattern p{P0, P1, P2, P3};
     return i / 4 * 4 + (p[i % 4] < 4 ? p[i % 4] : p[i % 4] - 4 + W);
   }

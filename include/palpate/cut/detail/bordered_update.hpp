@@ -56,9 +56,9 @@ inline BorderedUpdate::BorderedUpdate(const MatrixX& h, const MatrixX& a, const 
   require(half.info() == Eigen::Success, 0.0);
   const MatrixX l = half.matrixL();
   const MatrixX le = l.transpose() * e;
-  MatrixX small = le * l;
-  small.diagonal().array() += 1.0;
-  const Eigen::LLT<MatrixX> left(small);
+  MatrixX small_product = le * l;
+  small_product.diagonal().array() += 1.0;
+  const Eigen::LLT<MatrixX> left(small_product);
   require(left.info() == Eigen::Success, 0.0);
   smallest = smallest_eigenvalue(left);
   require(smallest > 1e-13, smallest);

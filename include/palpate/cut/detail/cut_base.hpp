@@ -62,8 +62,8 @@ class CutBase {
     DofLayout layout{{}, supported.mesh.positions, {}};
     for (const NodeId node : kept_nodes)
       for (int c = 0; c < 3; ++c)
-        if (place_of(node, c) >= 0) {
-          layout.kept.push_back(place_of(node, c));
+        if (index_of(node, c) >= 0) {
+          layout.kept.push_back(index_of(node, c));
           kept_.push_back({node, c});
         }
     for (const Index dof : conditions.free_dofs) layout.node_of_dof.push_back(dof / 3);
@@ -75,7 +75,7 @@ class CutBase {
         return assemble_stiffness<E>(supported, limits);
       }();
       entries.stiffness_bytes = k.bytes();
-      take_factor(k, conditions, layout, limits, entries);
+      make_factor(k, conditions, layout, limits, entries);
       load = free_load(topology, physics, k, conditions, node_map);
       if (report != nullptr) check_accuracy(k, conditions, limits, *report);
     } else {
@@ -95,7 +95,7 @@ class CutBase {
   SparseCholesky& interior() noexcept { return interior_; }
   const SparseCholesky& interior() const noexcept { return interior_; }
   /// Index of a dof in the factor; -1 when it is prescribed, not supported, or newer than the factor.
-  Index place_of(NodeId node, int component) const noexcept {
+  Index index_of(NodeId node, int component) const noexcept {
     const auto i = static_cast<std::size_t>(3 * Index{node} + component);
     return i < place_.size() ? place_[i] : -1;
   }
@@ -122,7 +122,7 @@ class CutBase {
     }
   };
 
-  void take_factor(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
+  void make_factor(const BlockMatrix& k, const EssentialConditions& conditions, const DofLayout& layout,
                    const SetupLimits& limits, SetupReport& entries) {
     SchurComplement schur = [&] {
       const StageTimer timer(entries, "factorisation");

@@ -86,7 +86,7 @@ PALPATE_INLINE void CutFactor::apply(const VectorX& x, VectorX& y) noexcept {
 
 PALPATE_INLINE void CutFactor::take_renewed() noexcept {
   if (!thread_.finished()) return;
-  thread_.take();
+  thread_.set_idle();
   if (request_.wanted && request_.made && request_.made->set_mass(mass_)) {
     base_ = std::move(request_.made);
     find_base_nodes();

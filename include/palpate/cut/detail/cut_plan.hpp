@@ -39,7 +39,7 @@ class CutPlan {
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     for (const bool is_fresh : {false, true})
       for (const NodeId node : nodes)
-        if ((3 * Index{node} >= displacement.size()) == is_fresh) place_node(node, is_fresh, topology, base);
+        if ((3 * Index{node} >= displacement.size()) == is_fresh) number_dofs(node, is_fresh, topology, base);
   }
 
   /// Assembles the change of the stiffness over the changed dofs, followed by the fresh ones.
@@ -51,14 +51,14 @@ class CutPlan {
     for (std::size_t k = 0; k < changed.size(); ++k) row[changed[k]] = static_cast<Index>(k);
     const auto find = [&](NodeId node, int c) -> Index {
       const auto known = places_.find(node);
-      const Index p = known != places_.end() ? known->second[static_cast<std::size_t>(c)] : kept_->place(node, c);
+      const Index p = known != places_.end() ? known->second[static_cast<std::size_t>(c)] : kept_->index_of(node, c);
       if (p < 0) return -1;
       return p >= first_fresh ? p - first_fresh + static_cast<Index>(changed.size()) : row.at(p);
     };
     for (const ChangedElement<E>& x : change->elements) {
       const ElementStiffness<E> k = physics_->stiffness(x.element);
       const auto add = [&](const auto& nodes, double sign) {
-        const auto at = ElementChanges<E>::places_of(nodes, find);
+        const auto at = ElementChanges<E>::indices_of(nodes, find);
         for (std::size_t i = 0; i < at.size(); ++i)
           for (std::size_t j = 0; j < at.size(); ++j)
             if (at[i] >= 0 && at[j] >= 0) all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
@@ -91,7 +91,7 @@ class CutPlan {
       for (const Index e : fragment.elements) {
         int known = 0;
         for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(e)])
-          if (kept_->place(node, 0) >= 0 || 3 * Index{node} >= displacement.size()) ++known;
+          if (kept_->index_of(node, 0) >= 0 || 3 * Index{node} >= displacement.size()) ++known;
         if (known > most) best = e, most = known;
       }
       const double stiffness = physics_->stiffness(best).trace() / (3.0 * E::nodes);
@@ -106,13 +106,13 @@ class CutPlan {
   }
   NodeId parent_of(NodeId node) const { return std::ranges::find(change->copies, node, &NodeCopy::node)->parent; }
   /// Numbers the dofs of a changed or new node.
-  void place_node(NodeId node, bool is_fresh, const CutTopology<E>& topology, const CutBase<E>& base) {
+  void number_dofs(NodeId node, bool is_fresh, const CutTopology<E>& topology, const CutBase<E>& base) {
     std::array<Index, 3> own{-1, -1, -1};
     bool added = false;
     for (int c = 0; c < 3; ++c) {
-      Index p = kept_->place(node, c);
+      Index p = kept_->index_of(node, c);
       const bool is_free = (topology.constrained()[static_cast<std::size_t>(node)] >> c & 1u) == 0;
-      if (p < 0 && is_free && (is_fresh || base.place_of(node, c) >= 0)) {
+      if (p < 0 && is_free && (is_fresh || base.index_of(node, c) >= 0)) {
         p = kept_->size() + static_cast<Index>(promoted.size() + fresh.size());
         (is_fresh ? fresh : promoted).push_back({node, c});
         added = true;

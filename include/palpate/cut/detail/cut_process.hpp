@@ -70,7 +70,7 @@ class CutProcess : public CutState<E> {
     auto physics = std::make_unique<CutPhysics<E>>(physics_->body, boundary, scene);
     CutSystem<E> fresh(topology_, *physics, kept_nodes(), limits_);
     renewal_.reset();
-    take_over(std::move(fresh));
+    replace_system(std::move(fresh));
     physics_.swap(physics);
     swept_.resize(0);
   }
@@ -147,9 +147,9 @@ class CutProcess : public CutState<E> {
     if (!change.fragments.empty()) system_.recover();  // displacement before this cut
     resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
     touchable_.update(topology_, change);
-    take_in(change);
+    update_compliance(change);
     report_.latency = seconds();
-    settle();
+    fold_update();
     report_.fold_seconds = seconds();
     if (!attempt([&] { remember(); })) before_.reset();  // the next cut tries again
   }
@@ -194,7 +194,7 @@ class CutProcess : public CutState<E> {
 
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
   /// precision.
-  void take_in(const TopologyChange<E>& change) {
+  void update_compliance(const TopologyChange<E>& change) {
     if (!follows_topology_) return renew();
     const bool is_taken = attempt_unless_refused([&] {
       ++cut_;
@@ -211,7 +211,7 @@ class CutProcess : public CutState<E> {
     if (!is_taken) renew();
   }
   /// Folds the update in. From the eighth unchecked cut on, runs one deferred check even if orders wait.
-  void settle() {
+  void fold_update() {
     if (report_.failed) return;
     system_.fold();
     report_.kept = system_.kept();
@@ -252,20 +252,21 @@ class CutProcess : public CutState<E> {
   bool take_renewal() {
     if (!renewal_ || !renewal_->is_done()) return false;
     attempt_unless_refused([&] {  // otherwise the old factor stays
-      if (auto made = renewal_->take(topology_)) take_over(std::move(*made));
+      if (auto made = renewal_->take(topology_)) replace_system(std::move(*made));
     });
     renewal_.reset();
     return true;
   }
   void renew() {
     renewal_.reset();
-    if (attempt_unless_refused([&] { take_over(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); })) return;
+    if (attempt_unless_refused([&] { replace_system(CutSystem<E>(topology_, *physics_, kept_nodes(), limits_)); }))
+      return;
     report_.failed = true;
     follows_topology_ = false;
     due_.fill(false);
   }
   /// Strong guarantee.
-  void take_over(CutSystem<E>&& fresh) {
+  void replace_system(CutSystem<E>&& fresh) {
     const double error = fresh.measured_error();
     fresh.recover();
     std::swap(system_, fresh);

@@ -64,7 +64,7 @@ class CutState {
     for (const VertexForce& f : forces)
       list.push_back({touchable_.nodes()[static_cast<std::size_t>(f.vertex)], f.force.in_model_axes()});
     VectorX u = system_.displacement_with(list);
-    resting_.place(u);
+    resting_.restore(u);
     return u;
   }
 

@@ -79,7 +79,7 @@ class CutSystem {
           while (promoted_.size() > promoted) promoted_.pop_back();
           while (source_.size() > nodes) source_.pop_back();
           dofs_.shrink_to(kept_before);
-          changes_.take_back(changes);
+          changes_.restore(changes);
         });
     step_ = step;
     return step;
@@ -117,7 +117,7 @@ class CutSystem {
   }
 
   /// Index of a dof in the compliance, -1 when it is prescribed or not kept.
-  Index place(NodeId node, int component) const noexcept { return dofs_.place(node, component); }
+  Index index_of(NodeId node, int component) const noexcept { return dofs_.index_of(node, component); }
   Index kept() const noexcept { return dofs_.size(); }
   /// Number of dofs that became kept since the factorisation.
   Index added() const noexcept { return kept() - none_; }
@@ -136,7 +136,7 @@ class CutSystem {
     VectorX u = displacement_;
     for (const auto& [node, force] : forces)
       for (int c = 0; c < 3; ++c)
-        if (const Index j = place(node, c); j >= 0)
+        if (const Index j = index_of(node, c); j >= 0)
           for (Index i = 0; i < kept(); ++i) dofs_.at(u, i) += (*compliance_)(i, j) * force[c];
     std::vector<std::pair<NodeId, Vector3>> list;
     for (const auto& [node, force] : forces) list.push_back({node, force});
@@ -170,9 +170,9 @@ class CutSystem {
 
  private:
   auto places() const {
-    return [this](NodeId node, int c) { return place(node, c); };
+    return [this](NodeId node, int c) { return index_of(node, c); };
   }
-  Index base_place(Index i) const noexcept { return base_.place_of(dofs_[i].node, dofs_[i].component); }
+  Index base_place(Index i) const noexcept { return base_.index_of(dofs_[i].node, dofs_[i].component); }
 
   /// Columns of the current inverse for the promoted dofs, over kept and promoted rows. `units` stores the data that
   /// later promoted dofs need.
@@ -181,7 +181,7 @@ class CutSystem {
     MatrixX x = MatrixX::Zero(n + m, m);
     if (m == 0) return x;
     std::vector<Index> dofs;
-    for (const NodeDof& d : plan.promoted) dofs.push_back(base_.place_of(d.node, d.component));
+    for (const NodeDof& d : plan.promoted) dofs.push_back(base_.index_of(d.node, d.component));
     units = base_.interior().reduce_units(dofs);
     const Index core = none_;
     if (m > 16)
@@ -202,7 +202,7 @@ class CutSystem {
     MatrixX r = MatrixX::Zero(n, m);
     const MatrixX old = x.topRows(n);
     changes_.subtract_product(old, r, places());
-    const std::vector<Index> rows = changes_.places(places());
+    const std::vector<Index> rows = changes_.indices(places());
     MatrixX part(n, static_cast<Index>(rows.size())), force(static_cast<Index>(rows.size()), m);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       part.col(static_cast<Index>(k)) = compliance_->col(rows[k]).head(n);
@@ -269,7 +269,7 @@ class CutSystem {
     changes_.add_forces([&](NodeId node) { return rest_of(node); },
                         [&](NodeId node, const Vector3& f) {
                           for (int c = 0; c < 3; ++c)
-                            if (const Index p = place(node, c); p >= 0) force[p] += f[c];
+                            if (const Index p = index_of(node, c); p >= 0) force[p] += f[c];
                         });
     const Index old = step.old, rest = step.all - old;
     VectorX u(step.all);
@@ -298,7 +298,7 @@ class CutSystem {
     VectorX load = VectorX::Zero(base_.size()), answer(base_.size());
     const auto add = [&](NodeId node, const Vector3& f) {
       for (int c = 0; c < 3; ++c)
-        if (const Index p = base_.place_of(node, c); p >= 0) load[p] += f[c];
+        if (const Index p = base_.index_of(node, c); p >= 0) load[p] += f[c];
     };
     changes_.add_forces([&](NodeId node) { return Vector3(known.template segment<3>(3 * Index{node})); }, add);
     for (const auto& [node, f] : forces) add(node, f);
@@ -311,8 +311,8 @@ class CutSystem {
     for (Index dof = 0; dof < rest.size(); ++dof) {
       const auto node = static_cast<NodeId>(dof / 3);
       const int c = static_cast<int>(dof % 3);
-      if (place(node, c) < 0)
-        if (const Index p = base_.place_of(node, c); p >= 0) u[dof] = rest[dof] + answer[p];
+      if (index_of(node, c) < 0)
+        if (const Index p = base_.index_of(node, c); p >= 0) u[dof] = rest[dof] + answer[p];
     }
   }
 

@@ -33,7 +33,7 @@ struct CutContact {
   bool too_far = false;    ///< true if the loads displace a vertex too far for linear elasticity
   bool published = false;  ///< true when ticks may read it; for the thread that cuts
   ContactSurface surface;
-  std::vector<std::array<Index, 3>> place;  ///< per vertex its dofs in the compliance, -1: constrained or removed
+  std::vector<std::array<Index, 3>> dofs;  ///< per vertex its dofs in the compliance, -1: constrained or removed
   ContactProblem problem;
   std::uint64_t cut = 0;  ///< number of the cut
 
@@ -43,12 +43,12 @@ struct CutContact {
              const ContactParameters& contact, std::uint64_t number)
       : left_out(made.triangles().size() < touchable.triangles().size()),
         surface(std::move(made)),
-        place(touchable.nodes().size(), {-1, -1, -1}),
+        dofs(touchable.nodes().size(), {-1, -1, -1}),
         problem(surface, radii, contact),
         cut(number) {
-    for (std::size_t v = 0; v < place.size(); ++v)
+    for (std::size_t v = 0; v < dofs.size(); ++v)
       for (int c = 0; c < 3; ++c)
-        if (touchable.is_used(v)) place[v][static_cast<std::size_t>(c)] = system.place(touchable.nodes()[v], c);
+        if (touchable.is_used(v)) dofs[v][static_cast<std::size_t>(c)] = system.index_of(touchable.nodes()[v], c);
   }
 };
 
@@ -72,7 +72,7 @@ struct CutView {
   void bound_exactly();
 
  private:
-  const std::array<Index, 3>& place(int vertex) const noexcept;
+  const std::array<Index, 3>& dofs_of(int vertex) const noexcept;
   double squares(const MatrixX& columns, const std::array<Index, 3>& at) const noexcept;
   /// Largest Frobenius norm of the blocks of vertex j with all others; `row`: workspace, one entry per dof.
   double exact_bound(std::size_t j, VectorX& row) const noexcept;

@@ -27,7 +27,7 @@ PALPATE_INLINE bool erase_stretched(const std::vector<Vector3>& positions, doubl
 }
 
 PALPATE_INLINE Matrix3 CutView::compliance(int i, int j) const noexcept {
-  const auto &a = place(i), &b = place(j);
+  const auto &a = dofs_of(i), &b = dofs_of(j);
   Matrix3 block;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t r = 0; r < 3; ++r)
@@ -36,7 +36,7 @@ PALPATE_INLINE Matrix3 CutView::compliance(int i, int j) const noexcept {
 }
 
 PALPATE_INLINE void CutView::bound_by(const std::vector<double>& before) {
-  const auto& places = contact->place;
+  const auto& places = contact->dofs;
   double longest = 0.0;
   for (const auto& p : places) longest = std::max(longest, std::sqrt(squares(step->z, p)));
   bound.assign(places.size(), 0.0);
@@ -54,14 +54,14 @@ PALPATE_INLINE void CutView::bound_as(const std::vector<double>& before) {
 }
 
 PALPATE_INLINE void CutView::bound_exactly() {
-  bound.assign(contact->place.size(), 0.0);
+  bound.assign(contact->dofs.size(), 0.0);
   VectorX row(step->all);
   for (std::size_t v = 0; v < bound.size(); ++v) bound[v] = exact_bound(v, row);
   set_floor();
 }
 
-PALPATE_INLINE const std::array<Index, 3>& CutView::place(int vertex) const noexcept {
-  return contact->place[static_cast<std::size_t>(vertex)];
+PALPATE_INLINE const std::array<Index, 3>& CutView::dofs_of(int vertex) const noexcept {
+  return contact->dofs[static_cast<std::size_t>(vertex)];
 }
 
 PALPATE_INLINE double CutView::squares(const MatrixX& columns, const std::array<Index, 3>& at) const noexcept {
@@ -73,10 +73,10 @@ PALPATE_INLINE double CutView::squares(const MatrixX& columns, const std::array<
 
 PALPATE_INLINE double CutView::exact_bound(std::size_t j, VectorX& row) const noexcept {
   row.setZero();
-  for (const Index p : contact->place[j])
+  for (const Index p : contact->dofs[j])
     if (p >= 0) step->add_squares(p, row);
   double largest = 0.0;
-  for (const auto& at : contact->place) {
+  for (const auto& at : contact->dofs) {
     double sum = 0.0;
     for (const Index p : at)
       if (p >= 0) sum += row[p];

@@ -72,7 +72,7 @@ class ElementChanges {
     std::vector<Entry> entries_;
     std::size_t pins_;
   };
-  void take_back(const Before& before) noexcept {
+  void restore(const Before& before) noexcept {
     while (pins_.size() > before.pins_) pins_.pop_back();
     for (const auto& entry : before.entries_) {
       const auto at = changed_.find(entry.element);
@@ -85,14 +85,14 @@ class ElementChanges {
 
   /// Places of all changed dofs, sorted.
   template <class Place>
-  std::vector<Index> places(Place&& place) const {
+  std::vector<Index> indices(Place&& place) const {
     std::vector<Index> all;
     const auto put = [&](Index p) {
       if (p >= 0) all.push_back(p);
     };
     for (const auto& [e, c] : changed_)
       for (const Connectivity* nodes : {&c.before, &c.now})
-        for (const Index p : places_of(*nodes, place)) put(p);
+        for (const Index p : indices_of(*nodes, place)) put(p);
     for (const Pin& pin : pins_)
       for (int c = 0; c < 3; ++c) put(place(pin.node, c));
     std::ranges::sort(all);
@@ -132,7 +132,7 @@ class ElementChanges {
   }
 
   template <class Place>
-  static Places places_of(const Connectivity& nodes, Place&& place) {
+  static Places indices_of(const Connectivity& nodes, Place&& place) {
     Places places;
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(nodes[i / 3], static_cast<int>(i % 3));
     return places;
@@ -142,7 +142,7 @@ class ElementChanges {
   template <class Place>
   static void add_product(const Changed& c, const Connectivity& nodes, double sign, const MatrixX& x, MatrixX& y,
                           Place&& place) {
-    const Places at = places_of(nodes, place);
+    const Places at = indices_of(nodes, place);
     for (Index k = 0; k < x.cols(); ++k) {
       Values v;
       for (std::size_t i = 0; i < at.size(); ++i) v[static_cast<Index>(i)] = at[i] < 0 ? 0.0 : x(at[i], k);

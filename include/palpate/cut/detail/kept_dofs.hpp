@@ -21,7 +21,7 @@ class KeptDofs {
   Index size() const noexcept { return static_cast<Index>(dofs_.size()); }
   const NodeDof& operator[](Index i) const noexcept { return dofs_[static_cast<std::size_t>(i)]; }
   /// Index of a dof, -1 when it is not kept.
-  Index place(NodeId node, int component) const noexcept;
+  Index index_of(NodeId node, int component) const noexcept;
   /// Strong guarantee.
   void add(const NodeDof& dof);
   /// Removes those after the first `size`.
@@ -35,7 +35,7 @@ class KeptDofs {
   std::vector<NodeDof> dofs_;
 };
 
-inline Index KeptDofs::place(NodeId node, int component) const noexcept {
+inline Index KeptDofs::index_of(NodeId node, int component) const noexcept {
   const auto i = static_cast<std::size_t>(node);
   return i < place_.size() ? place_[i][static_cast<std::size_t>(component)] : -1;
 }

@@ -45,7 +45,7 @@ class RestingNodes {
   }
 
   /// Replaces the entries of the nodes that rest in u, 3 per node [m].
-  void place(VectorX& u) const noexcept {
+  void restore(VectorX& u) const noexcept {
     for (std::size_t i = 0; i < rests_.size() && 3 * static_cast<Index>(i) < u.size(); ++i)
       if (rests_[i] != 0) set_node_vector(u, static_cast<Index>(i), displacement_[i]);
   }

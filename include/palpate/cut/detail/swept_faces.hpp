@@ -39,8 +39,9 @@ inline bool RestingEdge::is_crossed(const Vector3& p0, const Vector3& q0, const 
     const double at_x = x.dot(d) / length, at_y = y.dot(d) / length;
     const Vector3 across_x = x - at_x / length * d, across_y = y - at_y / length * d;
     if (!(across_x.dot(across_y) <= 0.0)) return false;
-    const double near = across_x.norm(), far = across_y.norm();
-    const double place = near + far > 0.0 ? (at_x * far + at_y * near) / (near + far) : 0.5 * (at_x + at_y);
+    const double length_x = across_x.norm(), length_y = across_y.norm();
+    const double place =
+        length_x + length_y > 0.0 ? (at_x * length_y + at_y * length_x) / (length_x + length_y) : 0.5 * (at_x + at_y);
     return place >= -rounding * length && place <= (1.0 + rounding) * length;
   };
   const double constant = d.dot(cross(p, q)), linear = d.dot(cross(p, w)) + d.dot(cross(v, q)),
@@ -91,9 +92,9 @@ inline void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, Positions 
 template <Element E, class Position>
 std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
   std::vector<ElementFace> open;
-  const Box near = sweep.box();
+  const Box near_box = sweep.box();
   constexpr double rounding = 1e-10;  // of an edge that moves along itself: the plane of such a sweep is arbitrary
-  if (!(sweep.area() > rounding * near.size().squaredNorm())) return open;
+  if (!(sweep.area() > rounding * near_box.size().squaredNorm())) return open;
   const Mesh<E>& mesh = topology.mesh();
   const auto centre = [&](Index e) {
     Vector3 sum = Vector3::Zero();
@@ -106,7 +107,7 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
     for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) own.include(position(node));
     const double reach = (own.high - own.low).norm();
     const Vector3 x = centre(e);
-    if (!(near.squared_distance(x) <= 4.0 * reach * reach)) continue;
+    if (!(near_box.squared_distance(x) <= 4.0 * reach * reach)) continue;
     for (std::size_t f = 0; f < E::faces.size(); ++f) {
       const Index other = topology.neighbour(e, f);
       if (other > e && sweep.crosses(x, centre(other))) open.push_back({e, static_cast<int>(f)});
@@ -126,9 +127,9 @@ void add_faces_moved_over(const CutTopology<E>& topology, const RestingEdge& edg
     for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
     return Vector3(sum / E::nodes);
   };
-  Box near;
-  near.include(edge.a);
-  near.include(edge.b);
+  Box near_box;
+  near_box.include(edge.a);
+  near_box.include(edge.b);
   for (Index e = 0; e < mesh.element_count(); ++e) {
     if (topology.is_removed(e)) continue;
     Box own;
@@ -136,7 +137,7 @@ void add_faces_moved_over(const CutTopology<E>& topology, const RestingEdge& edg
       for (const Vector3& x : {before(node), after(node)}) own.include(x);
     const Vector3 from = centre(e, before), to = centre(e, after);
     const double reach = 2.0 * (own.high - own.low).norm();
-    if (from == to || !(near.squared_distance(to) <= reach * reach)) continue;
+    if (from == to || !(near_box.squared_distance(to) <= reach * reach)) continue;
     for (std::size_t f = 0; f < E::faces.size(); ++f)
       if (const Index other = topology.neighbour(e, f); other >= 0)
         if (edge.is_crossed(from, centre(other, before), to, centre(other, after)))

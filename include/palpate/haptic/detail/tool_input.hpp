@@ -24,12 +24,12 @@ class ToolInput {
 
   /// Processes a state, world frame, for a tissue at `pose` with this surface and the contacts of the last tick, and
   /// moves the tool's target. Sets `status` to the faults of the state.
-  void take(const ToolState& state, const Eigen::Isometry3d& pose, const ContactSurface& surface,
-            std::span<const Contact> contacts, ContactTool& tool) noexcept;
+  void receive(const ToolState& state, const Eigen::Isometry3d& pose, const ContactSurface& surface,
+               std::span<const Contact> contacts, ContactTool& tool) noexcept;
 
   /// The same for a tool that no surface stops: after a motion of more than `longest` [m] in a tick it restarts at its
   /// new position.
-  void take_freely(const ToolState& state, const Eigen::Isometry3d& pose, double longest) noexcept;
+  void receive_freely(const ToolState& state, const Eigen::Isometry3d& pose, double longest) noexcept;
 
   /// Notes whether the tissue was updated in the tick of this state.
   void note_tissue(bool has_news) noexcept;

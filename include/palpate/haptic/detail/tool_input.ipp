@@ -11,9 +11,9 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometry3d& pose,
-                                    const ContactSurface& surface, std::span<const Contact> contacts,
-                                    ContactTool& tool) noexcept {
+PALPATE_INLINE void ToolInput::receive(const ToolState& state, const Eigen::Isometry3d& pose,
+                                       const ContactSurface& surface, std::span<const Contact> contacts,
+                                       ContactTool& tool) noexcept {
   tool.motion.setZero();
   tool.end_path = 0.0;
   if (!state.valid) lose_reading(contacts, tool);
@@ -26,8 +26,8 @@ PALPATE_INLINE void ToolInput::take(const ToolState& state, const Eigen::Isometr
   follow(taken.position, surface, contacts, tool);
 }
 
-PALPATE_INLINE void ToolInput::take_freely(const ToolState& state, const Eigen::Isometry3d& pose,
-                                           double longest) noexcept {
+PALPATE_INLINE void ToolInput::receive_freely(const ToolState& state, const Eigen::Isometry3d& pose,
+                                              double longest) noexcept {
   if (!state.valid) known_ = Known::nothing;
   Pose taken{position_, {1.0, 0.0, 0.0, 0.0}};
   if (!accept(state, pose, taken)) return;

@@ -16,7 +16,7 @@ PALPATE_COLD inline std::string convert_command(const std::string& name) {
 
 /// Reads what follows the version of a binary file: the integer 1, which shows the byte order.
 PALPATE_COLD inline void read_byte_order(TextReader& in, Format& format) {
-  const std::string_view raw = in.take(4, "the integer 1");
+  const std::string_view raw = in.read_bytes(4, "the integer 1");
   format.swap = from_bytes<std::int32_t>(raw, false) != 1;
   if (from_bytes<std::int32_t>(raw, format.swap) != 1)
     in.refuse(SetupErrorKind::bad_file, "the integer 1", in_quotes(raw));

@@ -62,7 +62,7 @@ inline bool is_repeated(const FileMesh& mesh) {
 
 /// Reads the nodes of an element and adds it.
 inline void add_element(const Numbers& in, const NodeIds& nodes, State& state, const Type& type, Index tag, int used) {
-  const Index place = in.in.place();
+  const Index place = in.in.location();
   const auto set = state.sets.find_or_add(state.mesh, used);
   for (int a = 0; a < facts(type.shape).nodes; ++a)
     state.mesh.cell_nodes.push_back(nodes.find(in.integer("a node id", 1, nodes.last()), in.in));

@@ -128,7 +128,7 @@ inline void read_element_block(const Numbers& in, const NodeIds& nodes, State& s
   add_memberships(in.in, state, set, count);
   for (Index i = 0; i < count; ++i) {
     in.begin("an element");
-    const Index place = in.in.place(), tag = in.long_integer("an element id", 1, max_tag);
+    const Index place = in.in.location(), tag = in.long_integer("an element id", 1, max_tag);
     for (int a = 0; a < shape.nodes; ++a)
       state.mesh.cell_nodes.push_back(nodes.find(in.long_integer("a node id", 1, nodes.last()), in.in));
     state.mesh.add_cell(tag, place, type.shape, set, type.order);

@@ -30,7 +30,7 @@ inline void sort_unique(std::vector<int>& numbers) {
 /// Refuses what was found in an earlier line of the file.
 [[noreturn]] PALPATE_COLD inline void refuse_at(const TextReader& in, Index line, SetupErrorKind kind,
                                                 const Pieces& expected, const Pieces& found, const Pieces& hint = {}) {
-  io::refuse(kind, {place_text(in.name(), line), ": expected ", joined(expected), ", found ", joined(found)},
+  io::refuse(kind, {location_text(in.name(), line), ": expected ", joined(expected), ", found ", joined(found)},
              joined(hint));
 }
 

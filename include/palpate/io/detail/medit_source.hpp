@@ -128,7 +128,7 @@ PALPATE_COLD inline bool is_binary(std::string_view text) noexcept {
 PALPATE_COLD inline Source::Source(std::string_view text, const std::string& name)
     : in(text, name, {is_binary(text) ? '\0' : '#'}), is_binary_(is_binary(text)) {
   if (is_binary_) {
-    swap_ = from_bytes<std::int32_t>(in.take(4, "the number 1"), false) != 1;
+    swap_ = from_bytes<std::int32_t>(in.read_bytes(4, "the number 1"), false) != 1;
   } else {
     in.need_line("MeshVersionFormatted");
     if (const std::string_view word = in.token(); word != "MeshVersionFormatted")
@@ -171,7 +171,7 @@ PALPATE_COLD inline bool Source::ends_here() {
   if (next_ == 0) return true;
   if (next_ < 0) return false;
   if (next_ < position()) in.refuse(SetupErrorKind::bad_file, "the next section behind this one", {"byte ", next_});
-  in.take(static_cast<std::size_t>(next_ - position()), "a section");
+  in.read_bytes(static_cast<std::size_t>(next_ - position()), "a section");
   return false;
 }
 

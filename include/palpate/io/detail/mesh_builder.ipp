@@ -258,7 +258,7 @@ PALPATE_COLD inline void MeshBuilder::add_notes() {
 
 PALPATE_COLD inline void MeshBuilder::refuse_shape(const FileCell& cell, CellShape wanted, const Pieces& hint) const {
   refuse(SetupErrorKind::unsupported,
-         {place_text(file_.files[cell.file], cell.place), ": expected a ", facts(wanted).name, ", found a ",
+         {location_text(file_.files[cell.file], cell.location), ": expected a ", facts(wanted).name, ", found a ",
           facts(cell.shape).name},
          hint);
 }

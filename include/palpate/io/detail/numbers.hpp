@@ -96,7 +96,7 @@ namespace detail {
 
 /// The next `bits` bits as an unsigned number.
 inline std::uint64_t binary_bits(TextReader& in, const BinaryLayout& layout, std::string_view what) {
-  const std::string_view raw = in.take(static_cast<std::size_t>(layout.bits) / 8, what);
+  const std::string_view raw = in.read_bytes(static_cast<std::size_t>(layout.bits) / 8, what);
   switch (layout.bits) {
     case 64:
       return from_bytes<std::uint64_t>(raw, layout.swap);
@@ -144,7 +144,7 @@ inline double binary_real(TextReader& in, const BinaryLayout& layout, std::strin
 
 inline void Numbers::skip_reals(int count, std::string_view what) const {
   if (is_binary_) {
-    in.take(static_cast<std::size_t>(count) * 8, what);
+    in.read_bytes(static_cast<std::size_t>(count) * 8, what);
     return;
   }
   for (int i = 0; i < count; ++i)

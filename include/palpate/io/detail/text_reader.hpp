@@ -15,7 +15,7 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace io {
 
 /// `file:12` for place 12, `file:byte 345` for place -345: line numbers have no meaning after binary data has begun.
-PALPATE_COLD inline std::string place_text(const std::string& file, Index place) {
+PALPATE_COLD inline std::string location_text(const std::string& file, Index place) {
   return joined({file, place < 0 ? ":byte " : ":", place < 0 ? -place : place});
 }
 
@@ -60,7 +60,7 @@ class TextReader {
   }
 
   /// The `bytes` raw bytes after the current line. From here on messages report bytes, not lines.
-  std::string_view take(std::size_t bytes, std::string_view what);
+  std::string_view read_bytes(std::size_t bytes, std::string_view what);
 
   /// Moves to the end of the next line that ends with `mark`, which becomes the current line, skipping everything
   /// before it: binary data may end without a line end. Refuses if there is none.
@@ -78,8 +78,8 @@ class TextReader {
   std::size_t size() const noexcept { return text_.size(); }  ///< total bytes
   std::size_t bytes_left() const noexcept { return next_ < text_.size() ? text_.size() - next_ : 0; }
 
-  /// The current line, or minus the current byte when binary data has begun; see place_text.
-  Index place() const noexcept {
+  /// The current line, or minus the current byte when binary data has begun; see location_text.
+  Index location() const noexcept {
     if (is_binary_) return next_ == 0 ? -1 : -static_cast<Index>(next_);
     return line_number_ < 1 ? 1 : line_number_;
   }
@@ -113,7 +113,7 @@ class TextReader {
   /// Throws `name:line: expected ..., found ...`.
   [[noreturn]] PALPATE_COLD void refuse(SetupErrorKind kind, const Pieces& expected, const Pieces& found,
                                         const Pieces& hint = {}) const {
-    io::refuse(kind, {place_text(name_, place()), ": expected ", joined(expected), ", found ", joined(found)},
+    io::refuse(kind, {location_text(name_, location()), ": expected ", joined(expected), ", found ", joined(found)},
                joined(hint));
   }
 
@@ -161,7 +161,7 @@ inline bool TextReader::next_raw_line() {
   return true;
 }
 
-inline std::string_view TextReader::take(std::size_t bytes, std::string_view what) {
+inline std::string_view TextReader::read_bytes(std::size_t bytes, std::string_view what) {
   is_binary_ = true;
   if (bytes > bytes_left())
     refuse(SetupErrorKind::bad_file, what, {"the end of the file after ", bytes_left(), " of ", bytes, " bytes"});

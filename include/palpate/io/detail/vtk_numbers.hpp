@@ -152,11 +152,12 @@ PALPATE_COLD inline void NumberStream::skip_string() {
     if (!in_.next_raw_line()) in_.refuse(SetupErrorKind::bad_file, "a string", "the end of the file");
     return;
   }
-  std::uint64_t length = from_bytes<std::uint8_t>(in_.take(1, "a string"), false);
+  std::uint64_t length = from_bytes<std::uint8_t>(in_.read_bytes(1, "a string"), false);
   const std::size_t more = (std::size_t{1} << (3U - length / 64U)) - 1U;
   length %= 64U;
-  for (const char c : in_.take(more, "the length of a string")) length = length << 8U | static_cast<unsigned char>(c);
-  in_.take(static_cast<std::size_t>(length), "a string");
+  for (const char c : in_.read_bytes(more, "the length of a string"))
+    length = length << 8U | static_cast<unsigned char>(c);
+  in_.read_bytes(static_cast<std::size_t>(length), "a string");
 }
 
 inline void NumberStream::skip(const NumberType& type, Index count) {
@@ -165,7 +166,7 @@ inline void NumberStream::skip(const NumberType& type, Index count) {
     for (Index i = 0; i < count; ++i) skip_string();
     return;
   }
-  if (is_binary) in_.take(static_cast<std::size_t>((count * type.bits + 7) / 8), "numbers");
+  if (is_binary) in_.read_bytes(static_cast<std::size_t>((count * type.bits + 7) / 8), "numbers");
   for (Index i = 0; !is_binary && i < count; ++i) {
     in_.need_more("a number");
     in_.token();

@@ -160,7 +160,7 @@ inline void FebioParser::read_elements(pugi::xml_node elements, int tag) {
 /// The ids of nodes are replaced by positions at the end.
 inline void FebioParser::add_cell(pugi::xml_node element, CellShape shape, int tag) {
   TextReader& in = document_.text_of(element);
-  const Index line = in.place();
+  const Index line = in.location();
   for (int a = 0; a < facts(shape).nodes; ++a) {
     in.need_more("a node id");
     mesh_.cell_nodes.push_back(static_cast<NodeId>(in.integer("a node id", 1, max_int)));
@@ -193,7 +193,7 @@ inline void FebioParser::number_nodes(const IdTable& nodes) {
       NodeId& node = mesh_.cell_nodes[cell.first_node + a];
       const Index found = nodes.find(node);
       if (found < 0)
-        refuse_at(document_.text_of({}), cell.place, SetupErrorKind::index_out_of_range,
+        refuse_at(document_.text_of({}), cell.location, SetupErrorKind::index_out_of_range,
                   "the id of a node of this file", {"'", node, "' in element ", cell.tag});
       node = static_cast<NodeId>(found);
     }

@@ -20,7 +20,7 @@ struct FrontSystem {
   VectorX pivots{}, diagonal{};      ///< in elimination order
 
   /// Refers to the values of a matrix with the analysed pattern; they must stay valid until elimination is done.
-  void take(const SparseLower& lower) noexcept;
+  void refer_to(const SparseLower& lower) noexcept;
   /// Starts with nothing eliminated. Allocates.
   FrontSystem(const FrontTree& fronts, double* columns, double smallest_pivot);
 };

@@ -16,7 +16,7 @@ PALPATE_INLINE FrontSystem::FrontSystem(const FrontTree& fronts, double* columns
       pivots(fronts.place_of_dof.size()),
       diagonal(zeros(fronts.place_of_dof.size())) {}
 
-PALPATE_INLINE void FrontSystem::take(const SparseLower& lower) noexcept {
+PALPATE_INLINE void FrontSystem::refer_to(const SparseLower& lower) noexcept {
   values = lower.valuePtr();
   for (Index j = 0; j < lower.cols(); ++j)
     for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)

@@ -230,7 +230,7 @@ class PartQueue {
     } stop{*this};
     PartBisection bisection(all_);
     Part part;
-    while (take(part)) {
+    while (pop(part)) {
       if (part.size() > worth_sharing)
         give(bisection.bisect(part));
       else
@@ -240,7 +240,7 @@ class PartQueue {
   }
 
   /// The part that was added last, so that the first thread goes on with what is in its cache. False at the end.
-  bool take(Part& part) {
+  bool pop(Part& part) {
     std::unique_lock lock(mutex_);
     const auto ready = [&] { return stopped_ || !parts_.empty() || in_work_ == 0; };
     do {

@@ -21,10 +21,10 @@ class SeparatorRefinement {
   }
 
  private:
-  struct Candidate {
+  struct Move {
     NodeId gain, node;
     Side to;
-    bool operator<(const Candidate& o) const noexcept { return gain != o.gain ? gain < o.gain : node < o.node; }
+    bool operator<(const Move& o) const noexcept { return gain != o.gain ? gain < o.gain : node < o.node; }
   };
   struct Change {
     NodeId node;
@@ -86,7 +86,7 @@ class SeparatorRefinement {
     std::size_t kept = 0;
     for (Index idle = 0; idle < patience && !heap_.empty();) {
       std::pop_heap(heap_.begin(), heap_.end());
-      const Candidate c = heap_.back();
+      const Move c = heap_.back();
       heap_.pop_back();
       if (lists_.side[c.node] != side_separator || moved_[c.node] == pass_ || gain(c.node, c.to) != c.gain) continue;
       if (5 * (sizes_[other(c.to)] + c.gain - 1) < part_.size()) continue;  // too unbalanced
@@ -110,7 +110,7 @@ class SeparatorRefinement {
   Part part_;
   std::array<Index, 3> sizes_{};
   IndexedVector<int> moved_;  // per node the last pass that moved it
-  std::vector<Candidate> heap_;
+  std::vector<Move> heap_;
   std::vector<Change> changes_;
   int pass_ = 0;
 };

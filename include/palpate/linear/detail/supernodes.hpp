@@ -48,7 +48,7 @@ class SupernodeBuilder {
     NodeVector number(parent_.size(), -1);
     for (Index i = reversed.size() - 1; i >= 0; --i) {
       number[reversed[i]] = static_cast<NodeId>(out.pivots.size());
-      emit(reversed[i], out);
+      append(reversed[i], out);
     }
     out.parent.resize(out.pivots.size());
     for (NodeId s : reversed) out.parent[number[s]] = parent_[s] < 0 ? -1 : number[parent_[s]];
@@ -160,7 +160,7 @@ class SupernodeBuilder {
     }
   }
 
-  void emit(NodeId s, Supernodes& out) const {
+  void append(NodeId s, Supernodes& out) const {
     for (NodeId part = head_[s]; part >= 0; part = part == s ? -1 : next_[part])
       for (Index j = begin_[part]; j < begin_[part + 1]; ++j) out.order.push_back(t_.order[j]);
     out.start.push_back(out.order.size());

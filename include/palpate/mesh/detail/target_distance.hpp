@@ -48,11 +48,11 @@ class TargetReader {
     sets.push_back(set);
   }
   void operator()(const PointCloud& cloud) {
-    check(cloud.points, "a point cloud");
+    require_points(cloud.points, "a point cloud");
     for (const Vector3& p : cloud.points) simplices.push_back({{p, p, p, p}, 1});
   }
   void operator()(const Polyline& line) {
-    check(line.points, "a polyline");
+    require_points(line.points, "a polyline");
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       const Vector3 &from = line.points[i], &to = line.points[std::min(i + 1, line.points.size() - 1)];
       simplices.push_back({{from, to, to, to}, 2});
@@ -102,7 +102,7 @@ class TargetReader {
     return !std::ranges::includes(nodes_of(*boundary_), nodes);
   }
 
-  void check(const std::vector<Vector3>& points, const std::string& what) const {
+  void require_points(const std::vector<Vector3>& points, const std::string& what) const {
     if (points.empty())
       raise(SetupErrorKind::bad_argument, what + " without points as target of refinement",
             "Give the places where the mesh is to be fine");

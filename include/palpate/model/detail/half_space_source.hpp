@@ -66,7 +66,7 @@ using FaceRule = std::vector<FacePoint>;
 /// Rules for one kind of face: for smooth functions, and for functions that are singular at a node, where the product
 /// with the area element of polar coordinates around the node is smooth.
 struct FaceRules {
-  FaceRule smooth, near;              ///< `near`: for a singularity closer than the size of the face
+  FaceRule smooth, near_singularity;  ///< `near`: for a singularity closer than the size of the face
   std::vector<FaceRule> singular_at;  ///< per node
 };
 

@@ -31,7 +31,7 @@ class NodePatch {
   }
   std::span<const NodeId> free() const noexcept { return free_; }
   /// Number of a node among the free ones, or -1.
-  int place(NodeId node) const noexcept { return place_[static_cast<std::size_t>(node)]; }
+  int index_of(NodeId node) const noexcept { return place_[static_cast<std::size_t>(node)]; }
   /// Whether a neighbour on the surface is not free.
   bool is_cut() const noexcept { return cut_; }
 

@@ -84,7 +84,7 @@ PALPATE_INLINE void NodePatch::find(NodeId middle, const Vector3& normal) {
     }
   cut_ = false;
   for (const int t : source_.boundary.triangles_at(middle))
-    for (const NodeId n : source_.boundary.triangle(t)) cut_ = cut_ || place(n) < 0;
+    for (const NodeId n : source_.boundary.triangle(t)) cut_ = cut_ || index_of(n) < 0;
 }
 
 PALPATE_INLINE HalfSpaceLoad::HalfSpaceLoad(const HalfSpaceSource& source) : source_(source) {}
@@ -118,7 +118,7 @@ PALPATE_INLINE void HalfSpaceLoad::add_boundary_face(const BoundaryFace& face) {
   for_each_traction(face.nodes, has_middle ? rules.singular_at[own] : rules.smooth,
                     [&](const FacePoint& point, const Matrix3& f) {
                       for (std::size_t a = 0; a < face.nodes.size(); ++a) {
-                        const int place = patch_->place(face.nodes[a]);
+                        const int place = patch_->index_of(face.nodes[a]);
                         if (place < 0) continue;
                         const double share = a == own ? point.shape[a] - 1.0 : point.shape[a];
                         load_->block<3, 3>(3 * place, 0) += share * f;
@@ -128,13 +128,13 @@ PALPATE_INLINE void HalfSpaceLoad::add_boundary_face(const BoundaryFace& face) {
 
 PALPATE_INLINE void HalfSpaceLoad::add_own_load() {
   const ElementLayout& element = source_.mesh.element;
-  auto load = load_->block<3, 3>(3 * patch_->place(patch_->middle()), 0);
+  auto load = load_->block<3, 3>(3 * patch_->index_of(patch_->middle()), 0);
   for (const NodeId e : source_.around.of(patch_->middle()))
     for (int f = 0; f < element.face_count; ++f) {
       ShortIds<static_cast<std::size_t>(max_face_nodes)> nodes(element.local_face(f).size());
       for (std::size_t a = 0; a < nodes.size(); ++a) nodes[a] = source_.mesh.nodes_of(e)[element.local_face(f)[a]];
       if (std::find(nodes.begin(), nodes.end(), patch_->middle()) != nodes.end()) continue;
-      for_each_traction(nodes, source_.rules.of(nodes.size()).near,
+      for_each_traction(nodes, source_.rules.of(nodes.size()).near_singularity,
                         [&](const FacePoint&, const Matrix3& traction) { load -= traction; });
     }
 }
@@ -152,7 +152,7 @@ PALPATE_INLINE void HalfSpaceLoad::compute(const NodePatch& patch, const HalfSpa
   load.setZero(3 * static_cast<Index>(patch.free().size()), 3);
   const auto own_faces = source_.boundary.faces_at(patch.middle());
   if (std::ranges::all_of(own_faces, [&](int f) { return is_flat(source_.boundary.face(f)); }))
-    load.block<3, 3>(3 * patch.place(patch.middle()), 0).setIdentity();
+    load.block<3, 3>(3 * patch.index_of(patch.middle()), 0).setIdentity();
   else
     add_own_load();
   for (const NodeId n : patch.free())
@@ -204,10 +204,10 @@ PALPATE_INLINE void PatchProjection::assemble(const UniformStiffness& stiffness,
   const auto size = 3 * static_cast<Index>(patch_.free().size());
   matrix_.setZero(size, size);
   for (const NodeId row : patch_.free()) {
-    const Index at = 3 * Index{patch_.place(row)};
+    const Index at = 3 * Index{patch_.index_of(row)};
     for (Index p = pattern.row_start[static_cast<std::size_t>(row)]; p <= pattern.diagonal(row); ++p) {
       const NodeId column = pattern.column[static_cast<std::size_t>(p)];
-      const int to = patch_.place(column);
+      const int to = patch_.index_of(column);
       const Matrix3 block = k.block(p);
       if (to < 0)
         right_.block<3, 3>(at, 0) -= block * boundary_value(column, field);
@@ -217,7 +217,7 @@ PALPATE_INLINE void PatchProjection::assemble(const UniformStiffness& stiffness,
         matrix_.block<3, 3>(3 * to, at) = block.transpose();
     }
     for (const ColumnBlocks::Block& below : columns_.of(row))
-      if (patch_.place(below.row) < 0) {
+      if (patch_.index_of(below.row) < 0) {
         const Matrix3 block = k.block(below.position).transpose();
         right_.block<3, 3>(at, 0) -= block * boundary_value(below.row, field);
       }
@@ -238,7 +238,7 @@ PALPATE_INLINE void PatchProjection::release_cut_domains(const UniformStiffness&
   const double released = bulk - kept_bulk * stiffness.shear_modulus;
   if (!(released > 0.0)) return;
   for (const NodeId n : patch_.nodes()) {
-    if (patch_.place(n) >= 0) continue;
+    if (patch_.index_of(n) >= 0) continue;
     const Vector3 offset = source_.position(n) - source_.position(patch_.middle());
     for (const int domain : source_.domains.of_node.of(n))
       release(domain, released, released / bulk * field.mean_stress(offset), field);
@@ -251,17 +251,17 @@ PALPATE_INLINE void PatchProjection::release(int domain, double bulk, const Vect
   const auto d = static_cast<std::size_t>(domain);
   const auto begin = static_cast<std::size_t>(domains.first[d]), end = static_cast<std::size_t>(domains.first[d + 1]);
   const double volume = domains.volume[d];
-  const auto is_free = [&](std::size_t a) { return patch_.place(domains.node[a]) >= 0; };
+  const auto is_free = [&](std::size_t a) { return patch_.index_of(domains.node[a]) >= 0; };
   Vector3 stress = -mean_stress;  // what the stiffness has in place of it, from the nodes that are not free
   for (std::size_t b = begin; b < end; ++b)
     if (!is_free(b)) stress += bulk * (boundary_value(domains.node[b], field).transpose() * domains.gradient[b]);
   for (std::size_t a = begin; a < end; ++a) {
     if (!is_free(a)) continue;
-    const Index row = 3 * Index{patch_.place(domains.node[a])};
+    const Index row = 3 * Index{patch_.index_of(domains.node[a])};
     const Vector3 g = volume * domains.gradient[a];
     right_.block<3, 3>(row, 0) += g * stress.transpose();
     for (std::size_t b = begin; b < end; ++b) {
-      const Index column = 3 * Index{patch_.place(domains.node[b])};
+      const Index column = 3 * Index{patch_.index_of(domains.node[b])};
       if (column >= 0 && column <= row)
         matrix_.block<3, 3>(row, column) -= bulk * (g * domains.gradient[b].transpose());
     }
@@ -333,9 +333,9 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
   const UniformStiffness& stiffness = source_.stiffness[static_cast<std::size_t>(material.stiffness)];
   patch_.find(middle, normal);
   if (patch_.is_cut()) marks.set(HalfSpaceMark::near_edge);
-  constexpr double near = 1.3, too_near = 0.7;  // edges of elements, lengths between nodes
+  constexpr double near_edge = 1.3, too_near = 0.7;  // edges of elements, lengths between nodes
   const double support = support_below(middle, normal);
-  if (support < near * source_.mesh.element.order) marks.set(HalfSpaceMark::near_support);
+  if (support < near_edge * source_.mesh.element.order) marks.set(HalfSpaceMark::near_support);
   layers_across_ = count_layers(middle, normal);
   if (support < too_near) return marks.set(HalfSpaceMark::thin);
   const HalfSpaceField field(stiffness.shear_modulus, stiffness.poisson_ratio, normal);
@@ -347,7 +347,7 @@ PALPATE_INLINE void PatchProjection::solve(int vertex, const Vector3& normal, st
     const auto found = std::ranges::lower_bound(source_.touched, n);
     if (found == source_.touched.end() || *found != n) continue;
     entries.push_back({static_cast<int>(found - source_.touched.begin()),
-                       stiffness.shear_modulus * solution_.block<3, 3>(3 * Index{patch_.place(n)}, 0)});
+                       stiffness.shear_modulus * solution_.block<3, 3>(3 * Index{patch_.index_of(n)}, 0)});
   }
   std::ranges::sort(entries, {}, &PatchEntry::vertex);
 }

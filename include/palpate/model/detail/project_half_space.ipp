@@ -86,15 +86,15 @@ inline bool is_uniform_near(NodeId node, const MeshRef& mesh, const NodeElements
     return std::hypot(y[0] - x[0], y[1] - x[1], y[2] - x[2]);
   };
   double longest = 0.0;
-  std::vector<NodeId> near{node};
-  for (std::size_t k = 0; k < near.size(); ++k)
-    for (const NodeId e : around.of(near[k])) {
+  std::vector<NodeId> near_nodes{node};
+  for (std::size_t k = 0; k < near_nodes.size(); ++k)
+    for (const NodeId e : around.of(near_nodes[k])) {
       if (!first.is_like(material(e))) return false;
       for (int a = 0; a < mesh.element.nodes; ++a) {
         const NodeId other = mesh.nodes_of(e)[a];
         if (k == 0) longest = std::max(longest, distance(other));
-        if ((k == 0 || distance(other) <= longest) && std::ranges::find(near, other) == near.end())
-          near.push_back(other);
+        if ((k == 0 || distance(other) <= longest) && std::ranges::find(near_nodes, other) == near_nodes.end())
+          near_nodes.push_back(other);
       }
     }
   return true;
@@ -253,7 +253,7 @@ PALPATE_INLINE Index HalfSpaceTable::longest_axis() const {
 
 /// For every vertex, itself and the vertices of lower number within its support, in ascending order.
 PALPATE_INLINE std::vector<std::vector<int>> HalfSpaceTable::neighbours() const {
-  std::vector<std::vector<int>> near(points_.size());
+  std::vector<std::vector<int>> near_vertices(points_.size());
   const Index axis = longest_axis();
   std::vector<int> order;  // along that axis, without vertices that are left as they are
   double longest = 0.0;
@@ -265,14 +265,14 @@ PALPATE_INLINE std::vector<std::vector<int>> HalfSpaceTable::neighbours() const 
   const auto point = [&](int v) -> const HalfSpacePoint& { return points_[static_cast<std::size_t>(v)]; };
   std::ranges::sort(order, {}, [&](int v) { return std::pair(point(v).position[axis], v); });
   for (auto first = order.begin(); first != order.end(); ++first) {
-    near[static_cast<std::size_t>(*first)].push_back(*first);
+    near_vertices[static_cast<std::size_t>(*first)].push_back(*first);
     const double end = point(*first).position[axis] + 2.0 * (point(*first).length + longest);
     for (auto other = first + 1; other != order.end() && point(*other).position[axis] < end; ++other)
       if (half_space_support(point(*first), point(*other)) > 0.0)
-        near[static_cast<std::size_t>(std::max(*first, *other))].push_back(std::min(*first, *other));
+        near_vertices[static_cast<std::size_t>(std::max(*first, *other))].push_back(std::min(*first, *other));
   }
-  for (auto& list : near) std::ranges::sort(list);
-  return near;
+  for (auto& list : near_vertices) std::ranges::sort(list);
+  return near_vertices;
 }
 
 /// Displacement of vertex i per force on vertex j: that of the patch around j, or of the half-space beyond the patch.
@@ -290,17 +290,17 @@ PALPATE_INLINE Matrix3 HalfSpaceTable::value(int i, int j) const {
 }
 
 PALPATE_INLINE ProjectedHalfSpace::Blocks HalfSpaceTable::collect() const {
-  const auto near = neighbours();
+  const auto near_vertices = neighbours();
   ProjectedHalfSpace::Blocks blocks;
   blocks.row_start.push_back(0);
-  for (const auto& row : near) {
+  for (const auto& row : near_vertices) {
     blocks.column.insert(blocks.column.end(), row.begin(), row.end());
     blocks.row_start.push_back(static_cast<Index>(blocks.column.size()));
   }
   limits_.require_memory(static_cast<double>(blocks.column.size()) * sizeof(Matrix3), "the projected half-space");
   blocks.value.reserve(blocks.column.size());
-  for (std::size_t i = 0; i < near.size(); ++i)
-    for (const int j : near[i]) blocks.value.push_back(value(static_cast<int>(i), j));
+  for (std::size_t i = 0; i < near_vertices.size(); ++i)
+    for (const int j : near_vertices[i]) blocks.value.push_back(value(static_cast<int>(i), j));
   return blocks;
 }
 

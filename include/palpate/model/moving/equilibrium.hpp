@@ -193,7 +193,7 @@ class Equilibrium {
   VectorX reactions() const;
   /// Moves the body out; no other function may be called afterwards. Positions of a body made from a mesh are relative
   /// to the centre of its bounding box.
-  DeformableBody release() &&;
+  DeformableBody take() &&;
 
   // NewtonProblem, at the present loads
   Index size() const noexcept { return body_.conditions.free_count(); }
@@ -242,7 +242,7 @@ class Equilibrium {
   /// Interpolates loads and prescribed values at a fraction between the initial and the set values.
   void go(double fraction) noexcept;
   /// Full displacement from the free dofs and the current prescribed values.
-  void place(const VectorX& x) noexcept { body_.conditions.place(x, prescribed_, displacement_); }
+  void scatter(const VectorX& x) noexcept { body_.conditions.scatter(x, prescribed_, displacement_); }
 
   /// Goes from the equilibrium at the current loads to that at another fraction: a tangent step, then Newton's method,
   /// then `settle` where tangents are not positive definite.
@@ -250,7 +250,7 @@ class Equilibrium {
 
   /// Minimises the potential at the current loads: from an unstable equilibrium (a column under axial compression), or
   /// where Newton's method met tangents that are not positive definite.
-  NewtonReport settle(detail::NewtonMethod& newton) noexcept;
+  NewtonReport minimise(detail::NewtonMethod& newton) noexcept;
   /// True if the tangent stiffness at x_ is positive definite.
   bool is_stable() noexcept;
 

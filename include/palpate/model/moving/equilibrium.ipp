@@ -125,7 +125,7 @@ PALPATE_INLINE EquilibriumReport Equilibrium::step(double dt, const EquilibriumP
   if (!report.converged) {
     x_ = before;
     go(0.0);
-    place(x_);
+    scatter(x_);
     body_.elastic->begin_step(0.0);
   }
   return report;
@@ -153,13 +153,13 @@ PALPATE_INLINE VectorX Equilibrium::reactions() const {
   return r;
 }
 
-PALPATE_INLINE DeformableBody Equilibrium::release() && {
+PALPATE_INLINE DeformableBody Equilibrium::take() && {
   end();
   return std::move(body_);
 }
 
 PALPATE_INLINE double Equilibrium::evaluate(const VectorX& x, VectorX& residual) noexcept {
-  place(x);
+  scatter(x);
   const DeformationReport deformation = body_.elastic->force(displacement_, force_);
   if (!deformation.admissible) return infinity;
   scale_ = std::max(force_.norm(), load_.norm());
@@ -169,7 +169,7 @@ PALPATE_INLINE double Equilibrium::evaluate(const VectorX& x, VectorX& residual)
 }
 
 PALPATE_INLINE void Equilibrium::assemble(const VectorX& x) noexcept {
-  place(x);
+  scatter(x);
   body_.elastic->tangent(displacement_, tangent_.matrix());
 }
 
@@ -228,7 +228,7 @@ PALPATE_INLINE EquilibriumReport Equilibrium::follow_loads(const EquilibriumPara
   report.stable = is_stable();
   if (report.converged && !report.stable) {
     start_ = x_;
-    const NewtonReport found = settle(newton);
+    const NewtonReport found = minimise(newton);
     report.iterations += found.iterations;
     if (found.converged)
       report.relative_residual = found.relative_residual;
@@ -263,12 +263,12 @@ PALPATE_INLINE NewtonReport Equilibrium::advance(detail::NewtonMethod& newton, d
   indefinite_ = 0;
   const NewtonReport found = newton.solve(*this, x_);
   if (indefinite_ == 0) return found;
-  NewtonReport settled = settle(newton);
+  NewtonReport settled = minimise(newton);
   settled.iterations += found.iterations;
   return settled;
 }
 
-PALPATE_INLINE NewtonReport Equilibrium::settle(detail::NewtonMethod& newton) noexcept {
+PALPATE_INLINE NewtonReport Equilibrium::minimise(detail::NewtonMethod& newton) noexcept {
   NewtonReport report;
   for (int k = 0; k < 3 && descent_budget_ > 0; ++k) {
     int count = 0;

@@ -61,14 +61,14 @@ class ExplicitTissueMotion final : public TissueMotion {
   MotionStep step(double h) noexcept override {
     motion_.save(start_);
     length_ = h;
-    return take();
+    return run_substeps();
   }
   bool correct(const VectorX& more) noexcept override {
     if (!(length_ > 0.0)) return false;
     motion_.save(end_);
     motion_.return_to(start_);
     motion_.load() += more;
-    if (take().status.ok()) return true;
+    if (run_substeps().status.ok()) return true;
     motion_.return_to(end_);
     motion_.load() -= more;
     return false;
@@ -76,7 +76,7 @@ class ExplicitTissueMotion final : public TissueMotion {
   bool prepare_response(double h) noexcept override {
     motion_.save(start_);
     length_ = h;
-    if (!take().taken) return false;
+    if (!run_substeps().taken) return false;
     unloaded_ = motion_.state().displacement;
     motion_.return_to(start_);
     return true;
@@ -86,7 +86,7 @@ class ExplicitTissueMotion final : public TissueMotion {
     if (!(largest > 0.0)) return false;
     const double scale = probe_force_ / largest;
     motion_.load() += scale * forces;
-    const bool taken = take().taken;
+    const bool taken = run_substeps().taken;
     u = (motion_.state().displacement - unloaded_) / scale;
     motion_.return_to(start_);
     motion_.load() -= scale * forces;
@@ -119,7 +119,7 @@ class ExplicitTissueMotion final : public TissueMotion {
   double substeps(double h) const noexcept { return std::max(1.0, std::ceil(h / motion_.limit())); }
 
   /// Steps from the current state over `length_`; prescribed dofs move to their prescribed values at constant speed.
-  MotionStep take() noexcept {
+  MotionStep run_substeps() noexcept {
     MotionStep done;
     const double count = substeps(length_);
     if (!(count <= maximum_substeps_)) {

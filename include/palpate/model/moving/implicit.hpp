@@ -178,7 +178,7 @@ inline PreparedMotion SolverTraits<Implicit<Newton>>::prepare(DeformableBody bod
   if (p.settle) {
     Equilibrium statics(std::move(body), limits);
     made.start = detail::settled(statics);
-    body = std::move(statics).release();
+    body = std::move(statics).take();
   }
   const DynamicsParameters parameters{p.scheme, p.mass_damping, p.stiffness_damping, p.mass, p.newton};
   made.motion = std::make_unique<detail::ImplicitMotion>(std::move(body), parameters, limits);

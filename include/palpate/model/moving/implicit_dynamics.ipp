@@ -158,7 +158,7 @@ PALPATE_INLINE double ImplicitDynamics::energy() noexcept {
 }
 
 PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& residual) noexcept {
-  body_.conditions.place(x, prescribed_, trial_);
+  body_.conditions.scatter(x, prescribed_, trial_);
   deformation_ = body_.elastic->force(trial_, force_);
   if (!deformation_.admissible) return infinity;
   step_.find_motion(trial_, velocity_, acceleration_);
@@ -176,7 +176,7 @@ PALPATE_INLINE double ImplicitDynamics::evaluate(const VectorX& x, VectorX& resi
 }
 
 PALPATE_INLINE bool ImplicitDynamics::prepare(const VectorX& x) noexcept {
-  body_.conditions.place(x, prescribed_, trial_);
+  body_.conditions.scatter(x, prescribed_, trial_);
   return prepare_at(trial_);
 }
 

@@ -124,7 +124,7 @@ class MovingTissue : public ModelBase {
   Matrix3 compliance(int i, int j) const noexcept {
     const View& view = views_.front();
     list(i, revision_, view.requested, near_);
-    const Matrix3* ready = view.near.find(i, j);
+    const Matrix3* ready = view.near_compliance.find(i, j);
     return ready != nullptr ? *ready : evaluate(view, i, j);
   }
   /// Displacement of a vertex under forces [m]: with `compliance`, but several times as fast.
@@ -202,16 +202,16 @@ class MovingTissue : public ModelBase {
     std::size_t count = 0;
     std::array<PointForce, most_points> point{};
     std::size_t points = 0;
-    const View* view = nullptr;        // of the tick; the thread that steps may read it in its next step
-    VertexList<most_pressed> pressed;  // of the rows since the last surface, also of those without force
-    VertexList<most_near> near;        // whose displacement was requested
-    std::uint64_t number = 0;          // of the surface of the tick
+    const View* view = nullptr;           // of the tick; the thread that steps may read it in its next step
+    VertexList<most_pressed> pressed;     // of the rows since the last surface, also of those without force
+    VertexList<most_near> near_vertices;  // whose displacement was requested
+    std::uint64_t number = 0;             // of the surface of the tick
   };
   struct View {
     std::vector<Vector3> free, pressed;         // positions without and with the forces used_
     std::vector<Matrix3> rotation, half_space;  // how it turns and stretches the surface: SurfaceStretch
     detail::SecantTerms secants;
-    detail::NearCompliance near;
+    detail::NearCompliance near_compliance;
     ContactSurface surface;
     Status status;
     detail::VertexCompliance compliance;

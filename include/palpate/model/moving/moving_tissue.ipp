@@ -72,7 +72,7 @@ PALPATE_INLINE void MovingTissue::set_up(const detail::Touchable& touchable, Pre
   agreement_ = detail::ForceAgreement(nodes_.size());
   if (stretches_) stretch_ = detail::SurfaceStretch(rest_, triangles_);
   View view = make_view();
-  view.near = {nodes_.size(), most_near, most_pressed};
+  view.near_compliance = {nodes_.size(), most_near, most_pressed};
   update_view(view);
   view.surface = ContactSurface(view.free, triangles_);
   view.surface.expect(view.pressed, {});
@@ -167,7 +167,7 @@ PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
   const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
   detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
   detail::drop_items(given.pressed.item, given.pressed.count, is_gone);
-  detail::drop_items(given.near.item, given.near.count, is_gone);
+  detail::drop_items(given.near_vertices.item, given.near_vertices.count, is_gone);
   return is_new;
 }
 
@@ -182,7 +182,7 @@ PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
         {forces.item.data(), forces.count}, {forces.point.data(), forces.points}, has_friction_, nodes_,
         [&](int v) { return Vector3(view.free[vertex(v)] - rest_[vertex(v)]); },
         [&](int i, int j) {
-          const Matrix3* const ready = view.near.find(i, j);
+          const Matrix3* const ready = view.near_compliance.find(i, j);
           return ready != nullptr ? *ready : evaluate(view, i, j);
         });
   }
@@ -370,7 +370,7 @@ PALPATE_INLINE Vector3 MovingTissue::displacement_of(int i, std::span<const Vert
   list(i, revision_, view.requested, near_);
   Vector3 u = Vector3::Zero(), unrotated = Vector3::Zero();
   const auto row = static_cast<std::size_t>(i);
-  view.near.multiply(i, forces, u, [&](const VertexForce& f) {
+  view.near_compliance.multiply(i, forces, u, [&](const VertexForce& f) {
     const Vector3& force = f.force.in_model_axes();
     unrotated += view.compliance.at_rest(row, vertex(f)) * (view.rotation[vertex(f)].transpose() * force);
     view.secants.add(row, vertex(f), force, u);
@@ -413,7 +413,7 @@ PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces,
   out.view = &views_.front();
   out.number = views_.front().number;
   out.pressed = pressed_;
-  out.near = near_;
+  out.near_vertices = near_;
   pressing_.publish();
 }
 
@@ -498,14 +498,15 @@ PALPATE_INLINE void MovingTissue::update_view(View& view) noexcept {
     stretch_.find(view.pressed, view.rotation, view.half_space);
   else
     view.half_space = view.rotation;
-  view.near.set(near_vertices(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
+  view.near_compliance.set(near_vertices(), used_.pressed.all(), [&](int i, int j) { return evaluate(view, i, j); });
 }
 
 /// The vertices whose displacement was requested; of a small surface all, since ticks look at further vertices in turn.
 PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept {
   constexpr std::size_t most_blocks = 32768;
   const std::size_t all = every_.size();
-  return all <= most_near && all * used_.pressed.count <= most_blocks ? std::span<const int>(every_) : used_.near.all();
+  return all <= most_near && all * used_.pressed.count <= most_blocks ? std::span<const int>(every_)
+                                                                      : used_.near_vertices.all();
 }
 
 /// By their energy: where parts are stiff, forces that hardly matter go from point to point.
@@ -534,7 +535,7 @@ PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   const auto make_room = [&] {  // after a cut
     if (view.number != changed_.number) {
       View made = changed_;
-      made.near.resize(nodes_.size(), most_near, most_pressed);
+      made.near_compliance.resize(nodes_.size(), most_near, most_pressed);
       view = std::move(made);
     }
     if (drawn.size() != motion_->displacement().size()) VectorX(motion_->displacement()).swap(drawn);

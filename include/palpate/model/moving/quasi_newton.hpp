@@ -57,7 +57,7 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
       const std::vector<NodeId> touched =
           detail::resolve_touchable(mesh, extract_boundary<E>(body.rest.mesh), scene).nodes;
       if (detail::BodyParts parts = detail::divide_body(mesh, touched, p.large_strain_within);
-          !parts.far.elements.empty())
+          !parts.far_part.elements.empty())
         return make_partly_linear(body, std::move(made), std::move(parts), p, limits);
     }
     BlockMatrix stiffness = assemble_stiffness<E>(body.rest, limits);
@@ -93,21 +93,21 @@ struct SolverTraits<Implicit<QuasiNewton<S>>> {
     detail::require_mass(made);
     std::unique_ptr<detail::LinearSurroundings> surroundings;
     {
-      const OriginalIds ids = parts.far.original_ids();
+      const OriginalIds ids = parts.far_part.original_ids();
       const ScopedIdTranslation translation(ids);
-      const Body<E> far = detail::part_of(body.rest, parts.far);
+      const Body<E> far_body = detail::part_of(body.rest, parts.far_part);
       surroundings = std::make_unique<detail::LinearSurroundings>(
-          assemble_stiffness<E>(far, limits), detail::conditions_of(parts.far, made.conditions), far.mesh.positions,
-          parts.interface_in(parts.far), limits);
+          assemble_stiffness<E>(far_body, limits), detail::conditions_of(parts.far_part, made.conditions),
+          far_body.mesh.positions, parts.interface_in(parts.far_part), limits);
     }
-    const OriginalIds ids = parts.near.original_ids();
+    const OriginalIds ids = parts.near_part.original_ids();
     const ScopedIdTranslation translation(ids);
-    HyperelasticBody<E, M> near = detail::part_of(body, parts.near);
-    const BlockMatrix stiffness = assemble_stiffness<E>(near.rest, limits);
-    const detail::BlockPattern pattern = detail::block_pattern(near.rest.mesh);
-    detail::StiffnessAt stiffness_at = stiffness_of_shape(near.rest, p);
+    HyperelasticBody<E, M> near_body = detail::part_of(body, parts.near_part);
+    const BlockMatrix stiffness = assemble_stiffness<E>(near_body.rest, limits);
+    const detail::BlockPattern pattern = detail::block_pattern(near_body.rest.mesh);
+    detail::StiffnessAt stiffness_at = stiffness_of_shape(near_body.rest, p);
     return detail::prepare_partly_linear(std::move(made), std::move(parts), pattern, stiffness, std::move(stiffness_at),
-                                         detail::make_energy_forces<S>(std::move(near), limits),
+                                         detail::make_energy_forces<S>(std::move(near_body), limits),
                                          std::move(surroundings), p, limits);
   }
 };

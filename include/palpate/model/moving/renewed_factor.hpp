@@ -39,7 +39,7 @@ class RenewedFactor {
         front_ = 1 - front_;
         ++renewals_;
       }
-      thread_.take();
+      thread_.set_idle();
     }
     if (front().factors != factors) {
       make(front(), factors, rest_);

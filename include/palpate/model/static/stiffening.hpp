@@ -139,7 +139,7 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     double weight = 0.0;
     for (const VertexForce& f : forces) sum += f.force.in_model_axes();
     const double total = sum.norm();
-    if (!(total > 0.0 && total < infinity)) return settle(axis_, 0.0, 0.0);
+    if (!(total > 0.0 && total < infinity)) return update_ratios(axis_, 0.0, 0.0);
     const Vector3 axis = sum / total;
     for (const VertexForce& f : forces) {
       Vector3 u = Vector3::Zero();
@@ -150,9 +150,9 @@ class QuasiNonLinear : public TissueAdaptor<Tissue> {
     }
     moved /= weight;
     const double along = moved.dot(axis);
-    settle(axis, along, (moved - along * axis).norm());
+    update_ratios(axis, along, (moved - along * axis).norm());
   }
-  void settle(const Vector3& axis, double along, double across) noexcept {
+  void update_ratios(const Vector3& axis, double along, double across) noexcept {
     const double next_along = midway(along_, axial_.ratio(along)), next_across = midway(across_, radial_.ratio(across));
     const bool same_axis = along_ == across_ || (axis - axis_).norm() <= imperceptible;
     if (next_along == along_ && next_across == across_ && same_axis) return;

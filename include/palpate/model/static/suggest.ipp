@@ -100,7 +100,7 @@ PALPATE_INLINE std::string Suggestion::code() const {
 PALPATE_INLINE Suggestion suggest(const Mesh<Tet4>& mesh, const Scene& scene,
                                   const RegionMaterials<LinearElastic>& materials,
                                   const detail::SuggestBudget& budget) {
-  detail::CandidateMaker maker(mesh, scene, materials, budget);
+  detail::SuggestedModelMaker maker(mesh, scene, materials, budget);
   Suggestion s;
   s.lists_nodes = detail::lists_nodes(scene);
   s.candidates = maker.make_all();

@@ -31,7 +31,7 @@ class Document {
   }
 
   /// `file:line` of an element.
-  std::string place_of(pugi::xml_node element) { return place_text(in_.name(), line_of(element)); }
+  std::string place_of(pugi::xml_node element) { return location_text(in_.name(), line_of(element)); }
 
   /// The only child of that name.
   pugi::xml_node need_child(pugi::xml_node element, const char* name);

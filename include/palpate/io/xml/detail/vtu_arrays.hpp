@@ -19,7 +19,7 @@ class ByteSource {
   ByteSource(std::string_view data, bool is_base64) : rest_(data), is_base64_(is_base64) {}
 
   /// The next bytes; fewer if there are no more or the encoding is wrong. Allocates at most the size of the data.
-  std::string take(std::size_t bytes);
+  std::string read_bytes(std::size_t bytes);
 
   std::size_t most_left() const noexcept;  ///< an upper bound of the bytes left
 
@@ -104,7 +104,7 @@ inline bool ByteSource::decode_group() {
   return true;
 }
 
-inline std::string ByteSource::take(std::size_t bytes) {
+inline std::string ByteSource::read_bytes(std::size_t bytes) {
   bytes = std::min(bytes, most_left());
   if (!is_base64_) {
     const std::string_view first = rest_.substr(0, bytes);
@@ -131,7 +131,7 @@ inline ByteSource VtuBytes::source_of(pugi::xml_node array) {
 }
 
 inline std::string VtuBytes::taken(pugi::xml_node array, ByteSource& source, std::size_t bytes) {
-  std::string data = source.take(bytes);
+  std::string data = source.read_bytes(bytes);
   if (data.size() != bytes)
     document_.refuse(array, SetupErrorKind::bad_file, {bytes, " bytes of data"}, {"the end after ", data.size()});
   return data;
@@ -218,7 +218,7 @@ class VtuArray {
   }
 
   const TextReader& in() const noexcept { return in_; }
-  Index line() const noexcept { return is_text_ ? in_.place() : line_; }  ///< of the next number, or of the array
+  Index line() const noexcept { return is_text_ ? in_.location() : line_; }  ///< of the next number, or of the array
 
   static const vtk::NumberType& type_of(Document& document, pugi::xml_node array) {
     const std::string_view type = document.need_attribute(array, "type");

@@ -30,8 +30,8 @@ struct BodyPart {
 
 /// A part near given nodes, and the rest.
 struct BodyParts {
-  BodyPart near, far;
-  std::vector<NodeId> interface;  ///< nodes of both parts, ascending
+  BodyPart near_part, far_part;
+  std::vector<NodeId> interface_nodes;  ///< nodes of both parts, ascending
 
   /// The interface by numbers within a part.
   std::vector<NodeId> interface_in(const BodyPart& part) const;

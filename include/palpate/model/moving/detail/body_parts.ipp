@@ -58,7 +58,7 @@ PALPATE_INLINE OriginalIds BodyPart::original_ids() const {
 
 PALPATE_INLINE std::vector<NodeId> BodyParts::interface_in(const BodyPart& part) const {
   std::vector<NodeId> local;
-  for (const NodeId i : interface) local.push_back(part.local(i));
+  for (const NodeId i : interface_nodes) local.push_back(part.local(i));
   return local;
 }
 
@@ -79,14 +79,14 @@ PALPATE_INLINE BodyParts divide_body(const MeshRef& mesh, std::span<const NodeId
     if (is_near(e)) mark(e, in_near);
   for (Index e = 0; e < mesh.element_count; ++e) {
     const bool between = !any(e, [&](std::size_t i) { return (parts[i] & in_near) == 0; });
-    (between ? made.near : made.far).elements.push_back(e);
+    (between ? made.near_part : made.far_part).elements.push_back(e);
     if (!between) mark(e, in_far);
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto node = static_cast<NodeId>(i);
-    if ((parts[i] & in_near) != 0) made.near.nodes.push_back(node);
-    if ((parts[i] & in_far) != 0) made.far.nodes.push_back(node);
-    if (parts[i] == in_both) made.interface.push_back(node);
+    if ((parts[i] & in_near) != 0) made.near_part.nodes.push_back(node);
+    if ((parts[i] & in_far) != 0) made.far_part.nodes.push_back(node);
+    if (parts[i] == in_both) made.interface_nodes.push_back(node);
   }
   return made;
 }

@@ -121,7 +121,7 @@ class CorotatedMotion {
       find_motion();
       ++report.linearisations;
       if (!options_.check) break;
-      report.energy_bounded = settle(highest, reached, report);
+      report.energy_bounded = shorten_increment(highest, reached, report);
       if (!report.energy_bounded && report.linearisations == 1) reached = return_to_start(report.deformation);
     } while (!report.energy_bounded && report.linearisations < options_.maximum_linearisations);
     if (!all_finite(trial_) || !all_finite(velocity_)) return report;
@@ -318,7 +318,7 @@ class CorotatedMotion {
   }
   /// Halves the increment until the potential is no higher than without it. Returns true when it is also within the
   /// limit.
-  bool settle(double highest, double& reached, CorotatedStep& report) noexcept {
+  bool shorten_increment(double highest, double& reached, CorotatedStep& report) noexcept {
     constexpr int most_halvings = 20;
     const double before = reached, noise = rounding(before);
     for (int halvings = 0;; ++halvings) {

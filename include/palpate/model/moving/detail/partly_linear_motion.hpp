@@ -25,7 +25,7 @@ class LinearSurroundings {
  public:
   /// Throws not_positive_definite, too_large or cancelled.
   LinearSurroundings(BlockMatrix stiffness, EssentialConditions conditions, const std::vector<Vector3>& positions,
-                     const std::vector<NodeId>& interface, const SetupLimits& limits);
+                     const std::vector<NodeId>& interface_nodes, const SetupLimits& limits);
 
   bool is_interface(std::size_t node) const noexcept { return is_interface_[node] != 0; }
   const EssentialConditions& conditions() const noexcept { return conditions_; }
@@ -150,7 +150,7 @@ class PartlyLinearMotion final : public TissueMotion {
  public:
   /// `near` is the motion of the near part with SurroundedForces, at rest under `load`; `positions` are those of the
   /// body at rest [m].
-  PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near,
+  PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near_motion,
                      std::unique_ptr<LinearSurroundings> surroundings, const VectorX& load,
                      const std::vector<Vector3>& positions);
 
@@ -168,7 +168,7 @@ class PartlyLinearMotion final : public TissueMotion {
   void set_prescribed(const VectorX& values) override;
   void complete(VectorX& u) noexcept override;
 
-  const TissueMotion& near() const noexcept { return *near_; }
+  const TissueMotion& near_motion() const noexcept { return *near_; }
 
  private:
   /// Takes over the displacement of the near part, and of the far part with the interface fixed where it has changed.

@@ -19,9 +19,10 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 PALPATE_INLINE LinearSurroundings::LinearSurroundings(BlockMatrix stiffness, EssentialConditions conditions,
                                                       const std::vector<Vector3>& positions,
-                                                      const std::vector<NodeId>& interface, const SetupLimits& limits)
+                                                      const std::vector<NodeId>& interface_nodes,
+                                                      const SetupLimits& limits)
     : stiffness_(std::move(stiffness)), conditions_(std::move(conditions)), is_interface_(positions.size(), 0) {
-  for (const NodeId i : interface) is_interface_[static_cast<std::size_t>(i)] = 1;
+  for (const NodeId i : interface_nodes) is_interface_[static_cast<std::size_t>(i)] = 1;
   DofLayout layout{{}, positions, {}};
   for (const Index dof : conditions_.free_dofs) {
     layout.node_of_dof.push_back(dof / 3);
@@ -145,7 +146,7 @@ PALPATE_INLINE void SurroundedStiffness::add_up(const BlockMatrix& part, BlockMa
 
 PALPATE_INLINE FarDisplacement::FarDisplacement(const BodyParts& parts, const std::vector<Vector3>& positions,
                                                 LinearSurroundings& surroundings, double largest)
-    : interface_(parts.interface), largest_(largest) {
+    : interface_(parts.interface_nodes), largest_(largest) {
   const auto position = [&](NodeId i) { return positions[static_cast<std::size_t>(i)]; };
   Vector3 centre = Vector3::Zero();
   for (const NodeId i : interface_) centre += position(i) / static_cast<double>(interface_.size());
@@ -157,19 +158,22 @@ PALPATE_INLINE FarDisplacement::FarDisplacement(const BodyParts& parts, const st
   if (inertia.trace() > 0.0)  // the second term: nodes on a line do not show a rotation about it
     inverse_inertia_ = (inertia + 1e-6 * inertia.trace() * Matrix3::Identity()).inverse();
   const std::vector<Index>& kept = surroundings.kept();
-  VectorX rotated(static_cast<Index>(kept.size())), far(3 * static_cast<Index>(parts.far.nodes.size()));
+  VectorX rotated(static_cast<Index>(kept.size())),
+      far_displacement(3 * static_cast<Index>(parts.far_part.nodes.size()));
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      const NodeId node = parts.far.nodes[static_cast<std::size_t>(kept[k] / 3)];
+      const NodeId node = parts.far_part.nodes[static_cast<std::size_t>(kept[k] / 3)];
       rotated[static_cast<Index>(k)] = Vector3::Unit(axis).cross(position(node) - centre)[kept[k] % 3];
     }
-    far.setZero();
-    surroundings.extend(rotated, far);
-    for (Index i = 0; i < far.size() / 3; ++i) reach_[axis] = std::max(reach_[axis], node_vector(far, i).norm());
+    far_displacement.setZero();
+    surroundings.extend(rotated, far_displacement);
+    for (Index i = 0; i < far_displacement.size() / 3; ++i)
+      reach_[axis] = std::max(reach_[axis], node_vector(far_displacement, i).norm());
   }
   const std::vector<std::uint8_t>& constrained = surroundings.conditions().constrained;
   for (std::size_t i = 0; i < constrained.size(); ++i)
-    if (constrained[i] != 0 && !surroundings.is_interface(i)) supports_.push_back({parts.far.nodes[i], constrained[i]});
+    if (constrained[i] != 0 && !surroundings.is_interface(i))
+      supports_.push_back({parts.far_part.nodes[i], constrained[i]});
   displaced_.resize(interface_.size() + supports_.size());
   loaded_.resize(constrained.size());
 }
@@ -198,23 +202,23 @@ PALPATE_INLINE bool FarDisplacement::is_too_large(const VectorX& u) noexcept {
   return !(displacement_spread(displaced_) <= largest_) || !(rotation.cwiseAbs().dot(reach_) <= largest_);
 }
 
-PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near,
+PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::unique_ptr<TissueMotion> near_motion,
                                                       std::unique_ptr<LinearSurroundings> surroundings,
                                                       const VectorX& load, const std::vector<Vector3>& positions)
     : parts_(std::move(parts)),
       surroundings_(std::move(surroundings)),
-      near_(std::move(near)),
-      kept_(dofs_in(parts_.near, parts_.far, surroundings_->kept())),
+      near_(std::move(near_motion)),
+      kept_(dofs_in(parts_.near_part, parts_.far_part, surroundings_->kept())),
       far_displacement_(parts_, positions, *surroundings_, largest_linear_displacement * extent(positions)),
       u_(zeros(load.size())),
       v_(u_),
       load_(load),
       near_vector_(zeros(near_->displacement().size())),
-      far_vector_(zeros(3 * static_cast<Index>(parts_.far.nodes.size()))),
+      far_vector_(zeros(3 * static_cast<Index>(parts_.far_part.nodes.size()))),
       kept_moved_(zeros(static_cast<Index>(kept_.size()))),
       extended_(far_vector_) {
   for (const Index dof : kept_)
-    kept_in_body_.push_back(3 * Index{parts_.near.nodes[static_cast<std::size_t>(dof / 3)]} + dof % 3);
+    kept_in_body_.push_back(3 * Index{parts_.near_part.nodes[static_cast<std::size_t>(dof / 3)]} + dof % 3);
   set_load(load);
   far_displacement_.set_from_load(surroundings_->from_load().displacement);
   springs_.reserve(most_springs);
@@ -224,7 +228,7 @@ PALPATE_INLINE PartlyLinearMotion::PartlyLinearMotion(BodyParts parts, std::uniq
 PALPATE_INLINE MotionStep PartlyLinearMotion::step(double h) noexcept {
   MotionStep done = near_->step(h);
   if (Index& worst = done.deformation.worst_element; worst >= 0)
-    worst = parts_.near.elements[static_cast<std::size_t>(worst)];
+    worst = parts_.near_part.elements[static_cast<std::size_t>(worst)];
   stepped_ = done.taken;
   if (!done.taken) return done;
   take_displacement();
@@ -235,37 +239,37 @@ PALPATE_INLINE MotionStep PartlyLinearMotion::step(double h) noexcept {
 PALPATE_INLINE bool PartlyLinearMotion::set_springs(std::span<const ContactSpring> springs) noexcept {
   copy_springs(springs, springs_);
   for (ContactSpring& s : springs_)
-    for (NodeId& node : s.nodes) node = parts_.near.local(node);
+    for (NodeId& node : s.nodes) node = parts_.near_part.local(node);
   return near_->set_springs(springs_);
 }
 
 PALPATE_INLINE void PartlyLinearMotion::take_displacement() noexcept {
   if (std::exchange(far_changed_, false)) {
     far_vector_ = surroundings_->from_load().displacement + surroundings_->from_prescribed().displacement;
-    parts_.far.scatter(far_vector_, u_);
+    parts_.far_part.scatter(far_vector_, u_);
   }
-  parts_.near.scatter(near_->displacement(), u_);
+  parts_.near_part.scatter(near_->displacement(), u_);
 }
 
 PALPATE_INLINE void PartlyLinearMotion::complete(VectorX& u) noexcept {
   for (std::size_t i = 0; i < kept_.size(); ++i) kept_moved_[static_cast<Index>(i)] = u[kept_in_body_[i]];
   surroundings_->extend(kept_moved_, extended_);
-  for (std::size_t i = 0; i < parts_.far.nodes.size(); ++i)
+  for (std::size_t i = 0; i < parts_.far_part.nodes.size(); ++i)
     if (!surroundings_->is_interface(i))
-      add_node_vector(u, Index{parts_.far.nodes[i]}, node_vector(extended_, static_cast<Index>(i)));
+      add_node_vector(u, Index{parts_.far_part.nodes[i]}, node_vector(extended_, static_cast<Index>(i)));
 }
 
 PALPATE_INLINE bool PartlyLinearMotion::respond(const VectorX& forces, VectorX& u) noexcept {
-  parts_.near.gather(forces, near_vector_);
+  parts_.near_part.gather(forces, near_vector_);
   if (!near_->respond(near_vector_, near_vector_)) return false;
   fill(u, 0.0);
-  parts_.near.scatter(near_vector_, u);
+  parts_.near_part.scatter(near_vector_, u);
   return true;
 }
 
 PALPATE_INLINE void PartlyLinearMotion::rest_at(const VectorX& u) {
   require_entries(u, u_.size());
-  parts_.near.gather(u, near_vector_);
+  parts_.near_part.gather(u, near_vector_);
   near_->rest_at(near_vector_);
   stepped_ = false;
   take_displacement();
@@ -274,7 +278,7 @@ PALPATE_INLINE void PartlyLinearMotion::rest_at(const VectorX& u) {
 PALPATE_INLINE void PartlyLinearMotion::set_load(const VectorX& load) {
   require_entries(load, u_.size());
   load_ = load;
-  parts_.far.gather(load, far_vector_);
+  parts_.far_part.gather(load, far_vector_);
   if (surroundings_->set_load(far_vector_)) {
     far_displacement_.set_from_load(surroundings_->from_load().displacement);
     far_changed_ = true;
@@ -284,15 +288,15 @@ PALPATE_INLINE void PartlyLinearMotion::set_load(const VectorX& load) {
 
 PALPATE_INLINE void PartlyLinearMotion::set_prescribed(const VectorX& values) {
   require_entries(values, u_.size());
-  parts_.far.gather(values, far_vector_);
+  parts_.far_part.gather(values, far_vector_);
   far_changed_ = surroundings_->set_prescribed(far_vector_) || far_changed_;
-  parts_.near.gather(values, near_vector_);
+  parts_.near_part.gather(values, near_vector_);
   near_->set_prescribed(near_vector_);
   load_near();
 }
 
 PALPATE_INLINE void PartlyLinearMotion::load_near() noexcept {
-  parts_.near.gather(load_, near_vector_);
+  parts_.near_part.gather(load_, near_vector_);
   for (std::size_t i = 0; i < kept_.size(); ++i)
     near_vector_[kept_[i]] += surroundings_->kept_load(static_cast<Index>(i));
   near_->set_load(near_vector_);
@@ -305,21 +309,22 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
                                                     std::unique_ptr<LinearSurroundings> surroundings,
                                                     const QuasiNewtonParameters& parameters,
                                                     const SetupLimits& limits) {
-  const std::vector<Index> kept = dofs_in(parts.near, parts.far, surroundings->kept());
-  DeformableBody near;
-  near.conditions = conditions_of(parts.near, whole.conditions);
-  near.pattern = near_pattern;
-  near.load = zeros(near.conditions.dof_count());
-  parts.near.gather(whole.load, near.load);
-  near.lumped = zeros(static_cast<Index>(parts.near.nodes.size()));
-  for (std::size_t i = 0; i < parts.near.nodes.size(); ++i) {
-    near.lumped[static_cast<Index>(i)] = whole.lumped[parts.near.nodes[i]];
-    near.positions.push_back(whole.positions[static_cast<std::size_t>(parts.near.nodes[i])]);
+  const std::vector<Index> kept = dofs_in(parts.near_part, parts.far_part, surroundings->kept());
+  DeformableBody near_body;
+  near_body.conditions = conditions_of(parts.near_part, whole.conditions);
+  near_body.pattern = near_pattern;
+  near_body.load = zeros(near_body.conditions.dof_count());
+  parts.near_part.gather(whole.load, near_body.load);
+  near_body.lumped = zeros(static_cast<Index>(parts.near_part.nodes.size()));
+  for (std::size_t i = 0; i < parts.near_part.nodes.size(); ++i) {
+    near_body.lumped[static_cast<Index>(i)] = whole.lumped[parts.near_part.nodes[i]];
+    near_body.positions.push_back(whole.positions[static_cast<std::size_t>(parts.near_part.nodes[i])]);
   }
-  VectorX far_load = zeros(3 * static_cast<Index>(parts.far.nodes.size()));
-  parts.far.gather(whole.load, far_load);
+  VectorX far_load = zeros(3 * static_cast<Index>(parts.far_part.nodes.size()));
+  parts.far_part.gather(whole.load, far_load);
   surroundings->set_load(far_load);
-  for (std::size_t i = 0; i < kept.size(); ++i) near.load[kept[i]] += surroundings->kept_load(static_cast<Index>(i));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    near_body.load[kept[i]] += surroundings->kept_load(static_cast<Index>(i));
 
   const auto joint =
       std::make_shared<SurroundedStiffness>(near_stiffness.pattern(), surroundings->stiffness(), kept, limits);
@@ -333,10 +338,10 @@ PALPATE_INLINE PreparedMotion prepare_partly_linear(DeformableBody whole, BodyPa
       joint->add_up(part, k);
       return true;
     };
-  auto factor = std::make_shared<RenewableFactor>(near, std::move(stiffness), parts.interface_in(parts.near),
+  auto factor = std::make_shared<RenewableFactor>(near_body, std::move(stiffness), parts.interface_in(parts.near_part),
                                                   std::move(stiffness_at), limits);
   auto motion = std::make_unique<QuasiNewtonMotion>(
-      std::move(near), std::make_unique<SurroundedForces>(std::move(near_forces), surroundings->stiffness(), kept),
+      std::move(near_body), std::make_unique<SurroundedForces>(std::move(near_forces), surroundings->stiffness(), kept),
       std::move(factor), parameters);
   motion->begin();
   PreparedMotion prepared;

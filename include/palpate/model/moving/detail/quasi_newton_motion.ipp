@@ -319,7 +319,7 @@ PALPATE_INLINE double QuasiNewtonMotion::find_equilibrium() noexcept {
     body_.conditions.gather(u_, x_);
     method_.start(*this, x_);
     report = method_.solve(*this, x_, {.maximum_iterations = most_in_round, .tolerance = equilibrium_tolerance()});
-    body_.conditions.place(x_, prescribed_, u_);
+    body_.conditions.scatter(x_, prescribed_, u_);
     if (report.evaluations == 0) break;  // no progress
   }
   return report.relative_residual;
@@ -358,7 +358,7 @@ PALPATE_INLINE void QuasiNewtonMotion::relax() {
   body_.conditions.gather(u_, x_);
   const VectorX start = u_;
   for (int k = 0; k < most; ++k) {
-    body_.conditions.place(x_, prescribed_, u_);
+    body_.conditions.scatter(x_, prescribed_, u_);
     factor_->rotate(u_);
     if (!(evaluate(x_, method_.residual()) < infinity)) break;
     precondition(method_.residual(), kept_free_);
@@ -372,7 +372,7 @@ PALPATE_INLINE void QuasiNewtonMotion::relax() {
 }
 
 PALPATE_INLINE double QuasiNewtonMotion::evaluate(const VectorX& x, VectorX& residual) noexcept {
-  body_.conditions.place(x, prescribed_, trial_);
+  body_.conditions.scatter(x, prescribed_, trial_);
   stored_ = forces_->evaluate(trial_, force_, deformation_);
   return stored_ < infinity ? balance(residual) : infinity;
 }

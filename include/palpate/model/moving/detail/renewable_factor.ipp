@@ -72,7 +72,7 @@ PALPATE_INLINE void RenewableFactor::take_renewed() noexcept {
     front_ = 1 - front_;
     ++renewals_;
   }
-  thread_->take();
+  thread_->set_idle();
 }
 
 PALPATE_INLINE void RenewableFactor::ask(const VectorX& u) noexcept {

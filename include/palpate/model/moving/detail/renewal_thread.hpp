@@ -24,7 +24,7 @@ class RenewalThread {
   bool idle() const noexcept { return state_.load(std::memory_order_acquire) == State::idle; }
   void ask() noexcept;
   bool finished() const noexcept { return state_.load(std::memory_order_acquire) == State::finished; }
-  void take() noexcept { state_.store(State::idle, std::memory_order_relaxed); }
+  void set_idle() noexcept { state_.store(State::idle, std::memory_order_relaxed); }
 
  private:
   enum class State { idle, asked, finished, stopped };

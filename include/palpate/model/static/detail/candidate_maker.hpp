@@ -23,14 +23,14 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 double pressing_tick_seconds(HapticServo& servo, double radius, const std::vector<SurfacePoint>& points);
 
 /// Measures candidates until the time is over. Keeps a reference to the materials.
-class CandidateMaker {
+class SuggestedModelMaker {
  public:
   /// Throws bad_argument.
-  CandidateMaker(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials,
-                 const SuggestBudget& budget);
-  CandidateMaker(const CandidateMaker&) = delete;
-  CandidateMaker& operator=(const CandidateMaker&) = delete;
-  ~CandidateMaker();
+  SuggestedModelMaker(const Mesh<Tet4>& mesh, const Scene& scene, const RegionMaterials<LinearElastic>& materials,
+                      const SuggestBudget& budget);
+  SuggestedModelMaker(const SuggestedModelMaker&) = delete;
+  SuggestedModelMaker& operator=(const SuggestedModelMaker&) = delete;
+  ~SuggestedModelMaker();
 
   /// Every candidate once. Throws the errors of the set-up of Tet4 on the mesh as given.
   std::vector<SuggestedModel> make_all();

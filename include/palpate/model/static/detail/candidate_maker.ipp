@@ -85,7 +85,7 @@ PALPATE_INLINE double pressing_tick_seconds(HapticServo& servo, double radius,
 }
 
 /// The model of Tet4 on the mesh as given, and the errors measured from it.
-struct CandidateMaker::Base {
+struct SuggestedModelMaker::Base {
   PressableTissue tissue;
   ForceErrorMeasurement errors;
 
@@ -94,9 +94,9 @@ struct CandidateMaker::Base {
       : tissue(mesh, scene, materials, options), errors(tissue.source(places)) {}
 };
 
-PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scene& scene,
-                                              const RegionMaterials<LinearElastic>& materials,
-                                              const SuggestBudget& budget)
+PALPATE_INLINE SuggestedModelMaker::SuggestedModelMaker(const Mesh<Tet4>& mesh, const Scene& scene,
+                                                        const RegionMaterials<LinearElastic>& materials,
+                                                        const SuggestBudget& budget)
     : mesh_(mesh),
       scene_(name_listed_nodes(mesh_, scene_at_rest(scene))),
       materials_(materials),
@@ -115,18 +115,18 @@ PALPATE_INLINE CandidateMaker::CandidateMaker(const Mesh<Tet4>& mesh, const Scen
           "Give it: touch(where, {.radius = 4e-3})");
 }
 
-PALPATE_INLINE CandidateMaker::~CandidateMaker() = default;
+PALPATE_INLINE SuggestedModelMaker::~SuggestedModelMaker() = default;
 
-PALPATE_INLINE double CandidateMaker::seconds() const noexcept {
+PALPATE_INLINE double SuggestedModelMaker::seconds() const noexcept {
   return 1e-9 * static_cast<double>(platform::compute_ns() - start_);
 }
 
-PALPATE_INLINE double CandidateMaker::seconds_left() const noexcept {
+PALPATE_INLINE double SuggestedModelMaker::seconds_left() const noexcept {
   constexpr double used = 0.97;  // of the budget: a set-up ends some time after it is cancelled
   return used * budget_.seconds - seconds();
 }
 
-PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
+PALPATE_INLINE ProgressCallback SuggestedModelMaker::within(double most) const {
 #if defined(PALPATE_HAS_EXCEPTIONS)
   const double end = seconds() + std::min(most, seconds_left());
   return [this, end](const Progress&) { return seconds() < end; };
@@ -137,7 +137,7 @@ PALPATE_INLINE ProgressCallback CandidateMaker::within(double most) const {
 }
 
 template <class Tissue>
-void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
+void SuggestedModelMaker::enter(SuggestedModel& model, Tissue& tissue) {
   constexpr double clearly = 1.2;
   const SetupReport& report = tissue.report();
   model.nodes = report.nodes;
@@ -167,7 +167,7 @@ void CandidateMaker::enter(SuggestedModel& model, Tissue& tissue) {
 }
 
 /// Tet4 on the mesh as given, and the fine tissue.
-PALPATE_INLINE void CandidateMaker::make_base(SuggestedModel& model) {
+PALPATE_INLINE void SuggestedModelMaker::make_base(SuggestedModel& model) {
   const double before = seconds();
   base_ = std::make_unique<Base>(mesh_, scene_, materials_, budget_.places, SetupOptions{});
   model.setup = seconds() - before;
@@ -191,7 +191,7 @@ PALPATE_INLINE void CandidateMaker::make_base(SuggestedModel& model) {
 }
 
 template <class E>
-void CandidateMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
+void SuggestedModelMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
   using Model = HapticFEModel<std::conditional_t<std::same_as<E, Tet4>, Smoothed<Tet4>, E>, LinearElastic>;
   const double before = seconds();
   Model tissue(mesh, scene_, materials_, SetupOptions{.progress = within(budget_.setup_seconds)});
@@ -199,13 +199,13 @@ void CandidateMaker::measure(SuggestedModel& model, const Mesh<E>& mesh) {
   enter(model, tissue);
 }
 
-PALPATE_INLINE CandidateMaker::Cost& CandidateMaker::cost_of(const std::string& element) noexcept {
+PALPATE_INLINE SuggestedModelMaker::Cost& SuggestedModelMaker::cost_of(const std::string& element) noexcept {
   return element == "Tet4" ? tet4_ : element == "Tet10" ? tet10_ : smoothed_;
 }
 
 /// Elimination in three dimensions grows with the square of the nodes; storing the compliance of the touchable ones
 /// with the square of their number, eliminating it with the cube: between them. Tet10 is about as sparse as Tet4.
-PALPATE_INLINE double CandidateMaker::predicted(const Pending& p) const {
+PALPATE_INLINE double SuggestedModelMaker::predicted(const Pending& p) const {
   const Cost& known = p.model.element != "Tet10" ? smoothed_ : tet10_.nodes > 0.0 ? tet10_ : tet4_;
   if (!(known.nodes > 0.0)) return p.model.setup;
   return p.model.setup + known.of_nodes * std::pow(p.nodes / known.nodes, 2.0) +
@@ -213,7 +213,7 @@ PALPATE_INLINE double CandidateMaker::predicted(const Pending& p) const {
 }
 
 template <class Work>
-void CandidateMaker::attempt(SuggestedModel& model, Work work) {
+void SuggestedModelMaker::attempt(SuggestedModel& model, Work work) {
   const double before = seconds();
 #if defined(PALPATE_HAS_EXCEPTIONS)
   try {
@@ -231,22 +231,22 @@ void CandidateMaker::attempt(SuggestedModel& model, Work work) {
 
 /// A candidate with its mesh, E: Tet4 for Smoothed<Tet4>.
 template <class E>
-CandidateMaker::Pending CandidateMaker::pending(const char* element, double edge) {
+SuggestedModelMaker::Pending SuggestedModelMaker::pending(const char* element, double edge) {
   constexpr Index most_nodes_factor = 20, least_most_nodes = 20000;
   Pending p;
   p.model.element = element;
   p.model.edge = edge;
   attempt(p.model, [&] {
     const double before = seconds();
-    Mesh<Tet4> near = mesh_;
+    Mesh<Tet4> near_mesh = mesh_;
     if (edge > 0.0)
-      near = refine_near_touched(mesh_, scene_, edge,
-                                 {.most_nodes = std::max(most_nodes_factor * mesh_.node_count(), least_most_nodes)});
+      near_mesh = refine_near_touched(
+          mesh_, scene_, edge, {.most_nodes = std::max(most_nodes_factor * mesh_.node_count(), least_most_nodes)});
     Mesh<E> mesh;
     if constexpr (std::same_as<E, Tet10>)
-      mesh = promote<Tet10>(near);
+      mesh = promote<Tet10>(near_mesh);
     else
-      mesh = std::move(near);
+      mesh = std::move(near_mesh);
     p.model.setup = seconds() - before;
     p.model.nodes = mesh.node_count();
     const auto boundary = extract_boundary<E>(mesh);
@@ -258,7 +258,7 @@ CandidateMaker::Pending CandidateMaker::pending(const char* element, double edge
   return p;
 }
 
-PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
+PALPATE_INLINE void SuggestedModelMaker::finish(Pending& p) {
   constexpr double sure = 1.5;  // of the prediction
   if (!p.measure) return;
   if (p.touched >= too_many_touched_) {
@@ -276,7 +276,7 @@ PALPATE_INLINE void CandidateMaker::finish(Pending& p) {
   }
 }
 
-PALPATE_INLINE std::vector<double> CandidateMaker::edges(std::initializer_list<double> parts) const {
+PALPATE_INLINE std::vector<double> SuggestedModelMaker::edges(std::initializer_list<double> parts) const {
   std::vector<double> edges;
   for (const double part : parts)
     if (const double edge = scene_.touch_radius() / part; edge < base_->errors.report().facet) edges.push_back(edge);
@@ -285,7 +285,7 @@ PALPATE_INLINE std::vector<double> CandidateMaker::edges(std::initializer_list<d
 
 /// Those that are set up soonest first. Tet10 is more accurate than Smoothed<Tet4> after a set-up as long, and with as
 /// many touchable nodes: it is tried before those that are set up in more than half of its time.
-PALPATE_INLINE std::vector<CandidateMaker::Pending> CandidateMaker::refined() {
+PALPATE_INLINE std::vector<SuggestedModelMaker::Pending> SuggestedModelMaker::refined() {
   std::vector<Pending> all;
   for (const double edge : edges({2.0, 3.0, 4.0, 5.0})) all.push_back(pending<Tet4>("Smoothed<Tet4>", edge));
   for (const double edge : edges({1.0, 2.0, 3.0})) all.push_back(pending<Tet10>("Tet10", edge));
@@ -295,7 +295,7 @@ PALPATE_INLINE std::vector<CandidateMaker::Pending> CandidateMaker::refined() {
 }
 
 /// The mesh as given first: finer facets make more contacts and longer ticks.
-PALPATE_INLINE std::vector<SuggestedModel> CandidateMaker::make_all() {
+PALPATE_INLINE std::vector<SuggestedModel> SuggestedModelMaker::make_all() {
   std::vector<SuggestedModel> models(1);
   models.front().element = "Tet4";
   make_base(models.front());

@@ -22,7 +22,7 @@ template <std::floating_point Scalar>
 class ComplianceColumns {
  public:
   /// `kept_index` gives the kept dof of every touchable dof, -1 when it is prescribed. Allocates; refuses too_large.
-  ComplianceColumns(std::vector<Index> kept_index, int slots, const SetupLimits& limits);
+  ComplianceColumns(std::vector<Index> kept_index, int slot_count, const SetupLimits& limits);
 
   std::size_t bytes() const noexcept { return values_.size() * sizeof(Scalar); }
   int vertices() const noexcept { return static_cast<int>(kept_index_.size() / 3); }
@@ -58,7 +58,7 @@ class ContactCompliance {
   ContactCompliance();
 
   /// Allocates for `kept_index.size() / 3` touchable vertices, see ComplianceColumns.
-  ContactCompliance(AnyStaticSystem system, std::vector<Index> kept_index, int slots, const SetupLimits& limits);
+  ContactCompliance(AnyStaticSystem system, std::vector<Index> kept_index, int slot_count, const SetupLimits& limits);
   ContactCompliance(ContactCompliance&&) noexcept;
   ContactCompliance& operator=(ContactCompliance&&) noexcept;
   ~ContactCompliance();

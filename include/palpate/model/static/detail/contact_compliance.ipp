@@ -16,12 +16,12 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 template <std::floating_point Scalar>
-ComplianceColumns<Scalar>::ComplianceColumns(std::vector<Index> kept_index, int slots, const SetupLimits& limits)
+ComplianceColumns<Scalar>::ComplianceColumns(std::vector<Index> kept_index, int slot_count, const SetupLimits& limits)
     : kept_index_(std::move(kept_index)) {
-  limits.require_memory(3.0 * static_cast<double>(kept_index_.size()) * slots * sizeof(Scalar),
+  limits.require_memory(3.0 * static_cast<double>(kept_index_.size()) * slot_count * sizeof(Scalar),
                         "the contact compliance");
-  values_.assign(3 * kept_index_.size() * static_cast<std::size_t>(slots), Scalar(0));
-  bound_.assign(static_cast<std::size_t>(slots), 0.0);
+  values_.assign(3 * kept_index_.size() * static_cast<std::size_t>(slot_count), Scalar(0));
+  bound_.assign(static_cast<std::size_t>(slot_count), 0.0);
 }
 
 template <std::floating_point Scalar>
@@ -69,7 +69,7 @@ class ColumnWorker {
   /// Returns false when the queue of requests is full.
   bool order(int vertex, int slot) noexcept { return orders_.push({vertex, slot, true}); }
   /// Takes the next finished column; false when there is none.
-  bool take(ColumnOrder& done) noexcept { return answers_.pop(done); }
+  bool pop(ColumnOrder& done) noexcept { return answers_.pop(done); }
 
  private:
   void work() noexcept;
@@ -115,17 +115,17 @@ template <std::floating_point Scalar>
 ContactCompliance<Scalar>::~ContactCompliance() = default;
 
 template <std::floating_point Scalar>
-ContactCompliance<Scalar>::ContactCompliance(AnyStaticSystem system, std::vector<Index> kept_index, int slots,
+ContactCompliance<Scalar>::ContactCompliance(AnyStaticSystem system, std::vector<Index> kept_index, int slot_count,
                                              const SetupLimits& limits)
     : system_(std::move(system)),
       slot_of_(kept_index.size() / 3, -1),
       ordered_(slot_of_.size(), false),
       substituted_(slot_of_.size(), false),
       column_(system_.kept()) {
-  slots = std::min(slots, static_cast<int>(slot_of_.size()));
-  columns_ = std::make_unique<ComplianceColumns<Scalar>>(std::move(kept_index), slots, limits);
-  vertex_of_.assign(static_cast<std::size_t>(slots), -1);
-  last_used_.assign(static_cast<std::size_t>(slots), 0);
+  slot_count = std::min(slot_count, static_cast<int>(slot_of_.size()));
+  columns_ = std::make_unique<ComplianceColumns<Scalar>>(std::move(kept_index), slot_count, limits);
+  vertex_of_.assign(static_cast<std::size_t>(slot_count), -1);
+  last_used_.assign(static_cast<std::size_t>(slot_count), 0);
 }
 
 template <std::floating_point Scalar>
@@ -165,7 +165,7 @@ template <std::floating_point Scalar>
 Status ContactCompliance<Scalar>::collect(bool& arrived) noexcept {
   Status status;
   ColumnOrder done;
-  while (worker_ && worker_->take(done)) {
+  while (worker_ && worker_->pop(done)) {
     arrived = true;
     slot_of_[static_cast<std::size_t>(done.vertex)] = done.slot;
     ++revision_;

@@ -259,8 +259,8 @@ PALPATE_INLINE void ForceErrorMeasurement::make_reference(const SetupLimits& lim
   };
   const auto add = [&](const Vector3& point) {
     cloud.points.push_back(point);
-    where::PointSet near = where::sphere(point, reach * source_.radius + 2.0 * edge);
-    touched = touched ? *touched || near : near;
+    where::PointSet near_points = where::sphere(point, reach * source_.radius + 2.0 * edge);
+    touched = touched ? *touched || near_points : near_points;
   };
   for (const Place& place : places_) {
     const Positions at = points(place, position);
