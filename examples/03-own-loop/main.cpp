@@ -58,8 +58,7 @@ class Scheduler {
 /// All data of the callback: constructed before the scheduler starts, read by other threads after it has stopped.
 struct Session {
   Session(Organ& organ, double duration)
-      : servo(organ, SphereTool{.radius = 4e-3},
-              {.devices = {{.peak_force = 3.3, .stiffness = 500.0}}}),  // from your SDK
+      : servo(organ, SphereTool{.radius = 4e-3}, {.devices = {{.peak_force = 3.3, .stiffness = 500.0}}}),  // your SDK's
         seconds(duration) {}
 
   HapticServo servo;

@@ -32,11 +32,8 @@ constexpr double radius = 0.006, half_length = 0.015, depth = 0.005, friction = 
 
 ServoOptions options() {
   ServoOptions o;
-  o.devices = {{.peak_force = 20.0,
-                .continuous_force = 10.0,
-                .stiffness = 3000.0,
-                .peak_torque = 0.4,
-                .rotational_stiffness = 3.0}};
+  o.devices = {{.peak_force = 20.0, .continuous_force = 10.0, .stiffness = 3000.0, .peak_torque = 0.4}};
+  o.devices[0].rotational_stiffness = 3.0;
   o.contact.friction = friction;
   return o;
 }

@@ -139,10 +139,10 @@ int run_example(const std::filesystem::path& out) {
   chart.line(force, "blue");
   std::vector<std::string> sections{chart.svg()};
   sections.insert(sections.end(), record.pictures.begin(), record.pictures.end());
+  const auto& cut = *servo.tick_view().blade();
   const example::Figures figures{
       {"largest force of the blade", text("%.2f N", longest)},
-      {"cut area and work", text("%.1f cm^2 with %.1f mJ", 1e4 * servo.tick_view().blade()->area(),
-                                 1e3 * servo.tick_view().blade()->work())},
+      {"cut area and work", text("%.1f cm^2 with %.1f mJ", 1e4 * cut.area(), 1e3 * cut.work())},
       {"opening of the wound", text("%.2f mm", 1e3 * gape)},
       {"latency of the last cut of the slit", text("%.1f ms", 1e3 * slit.latency)},
       {"cuts, factorisations", text("%d, %d", static_cast<int>(end.cuts), static_cast<int>(end.renewals))},
