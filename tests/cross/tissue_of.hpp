@@ -206,7 +206,7 @@ std::unique_ptr<Tissue> make_tissue(const Scene& scene, const Body& body, const 
   const palpate::RegionMaterials<M> materials = materials_of<M>(scene, body, given, mesh.region_names);
   const auto make = [&] {
     std::shared_ptr<Part> model;
-    if constexpr (requires { typename Model::Parameters; })
+    if constexpr (!std::same_as<typename Model::Parameters, palpate::NoParameters>)
       model = SolverOf<Solver>::template make<Model>(scene, body, [&](const typename Model::Parameters& parameters) {
         return std::make_unique<Model>(mesh, body.conditions, materials, options, parameters);
       });
