@@ -1,5 +1,5 @@
 # Checks that no word is used that docs/vocabulary.md replaces: the code words of the first column of its last table, as
-# whole words or as parts of an identifier, in sources and pages. In tests, neither is Approx without its namespace: that
+# whole words or as parts of an identifier, in sources and pages. In the library, no name that is a macro elsewhere. In tests, neither is Approx without its namespace: that
 # compiles with Catch2 v2 only.
 #   cmake -P cmake/check_words.cmake
 cmake_minimum_required(VERSION 3.21)
@@ -46,6 +46,17 @@ foreach(file IN LISTS files)
       string(APPEND found "  ${name}: 'Approx', not 'Catch::Approx', in: ${line}\n")
     endforeach()
   endif()
+endforeach()
+# Names that are macros in headers of systems (docs/vocabulary.md), as words of code, before a comment or a string.
+set(macros "near|far|small|interface|slots|signals|emit")
+list(FILTER files INCLUDE REGEX "/include/")
+foreach(file IN LISTS files)
+  file(STRINGS ${file} lines REGEX "^[^/\"]*(^|[^A-Za-z_/\"])(${macros})([^A-Za-z_]|$)")
+  file(RELATIVE_PATH name ${root} ${file})
+  foreach(line IN LISTS lines)
+    string(STRIP "${line}" line)
+    string(APPEND found "  ${name}: a macro of system headers in: ${line}\n")
+  endforeach()
 endforeach()
 list(LENGTH files count)
 if(found)

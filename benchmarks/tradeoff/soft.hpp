@@ -13,10 +13,7 @@ template <class Material>
 RegionMaterials<Material> large_strain_materials(const RegionMaterials<LinearElastic>& materials) {
   RegionMaterials<Material> converted;
   for (const auto& [region, m] : materials)
-    if constexpr (requires(Material material) { material.base; })
-      converted.push_back({region, Material{m}});
-    else
-      converted.push_back({region, Material{m.youngs_modulus, m.poisson_ratio, m.density}});
+    converted.push_back({region, Material{m.youngs_modulus, m.poisson_ratio, m.density}});
   return converted;
 }
 

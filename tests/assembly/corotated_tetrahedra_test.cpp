@@ -20,8 +20,7 @@ HyperelasticBody<Tet4, Law> rotational_block(std::array<int, 3> cells) {
   mesh.region_names = {"below", "above"};
   for (Index e = 0; e < mesh.element_count(); ++e)
     mesh.regions.push_back(element_nodes<Tet4>(mesh, e).col(2).mean() > 0.03 ? 1 : 0);
-  return make_hyperelastic_body<Tet4, Law>(std::move(mesh),
-                                           std::vector<Law>{{{3e3, 0.4, 1000.0}}, {{15e3, 0.3, 1000.0}}});
+  return make_hyperelastic_body<Tet4, Law>(std::move(mesh), std::vector<Law>{{3e3, 0.4, 1000.0}, {15e3, 0.3, 1000.0}});
 }
 VectorX wild(Index dofs, double amount) {
   testing::Random random(5);

@@ -103,10 +103,7 @@ Model make_block() {
   using Material = typename Model::MaterialType;
   const auto mesh = copy_mesh<typename Model::ElementType>(box_tet4(size, {5, 5, 3}));
   const Scene scene = Scene().fix("z0").touch("z1");
-  if constexpr (requires(Material m) { m.base; })
-    return Model(mesh, scene, Material{{5e3, 0.4, 1000.0}});
-  else
-    return Model(mesh, scene, Material{5e3, 0.4, 1000.0});
+  return Model(mesh, scene, Material{5e3, 0.4, 1000.0});
 }
 
 /// One model, as the tissue of a session or as a member of a group.

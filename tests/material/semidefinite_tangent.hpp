@@ -10,7 +10,7 @@ using namespace palpate;
 /// 2 mu R sym(R^T dF) + lambda (cof F : dF) cof F: the tangent of Hooke's shear stress at fixed R, and the
 /// Gauss-Newton part of the volume term. Positive semidefinite at every F, exact at rest and for any rotation.
 inline Matrix9 semidefinite_tangent(const Corotational& m, const Tensor3<double>& f) noexcept {
-  const double lambda = m.base.lame_lambda(), mu = m.base.shear_modulus();
+  const auto [lambda, mu] = detail::lame<double>(m.small_strain());
   const Tensor3<double> r = closest_rotation(f), c = cofactor(f);
   Matrix9 t = (lambda * vector9(c)) * vector9(c).transpose();
   t.diagonal().array() += mu;

@@ -48,6 +48,8 @@ class SofterTissue : public StaticTissue<E, M, SparseCholesky> {
 };
 
 struct Softer {};
+/// Its traits name a tissue of another form.
+struct Misfit {};
 
 }  // namespace
 
@@ -55,6 +57,11 @@ template <>
 struct palpate::SolverTraits<Softer> {
   template <class E, class M>
   using Tissue = SofterTissue<E, M>;
+};
+template <>
+struct palpate::SolverTraits<Misfit> : palpate::SolverTraits<SparseCholesky> {
+  template <class E>
+  using Tissue = SofterTissue<E, LinearElastic>;
 };
 
 namespace {
@@ -64,6 +71,9 @@ using Linear = HapticFEModel<Tet4, LinearElastic, SparseCholesky>;
 static_assert(TissueModel<Own>);
 static_assert(std::same_as<Own::Parameters, SofterParameters>);
 static_assert(std::same_as<Linear::Parameters, NoParameters>);
+// An error where it is used, not ignored
+static_assert(detail::NamesTissue<Softer> && detail::NamesTissue<Misfit>);
+static_assert(!detail::NamesTissue<SparseCholesky> && !detail::NamesTissue<Implicit<QuasiNewton<>>>);
 // Every family of solvers by the same template
 static_assert(std::derived_from<Linear, LinearTissue<double>>);
 static_assert(std::derived_from<HapticFEModel<Tet4, LinearElastic, Stiffening<SparseCholesky>>, LinearTissue<double>>);

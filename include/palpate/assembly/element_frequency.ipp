@@ -13,9 +13,9 @@ PALPATE_INLINE double largest_symmetric_eigenvalue(const MatrixX& symmetric) {
   const double* const end = symmetric.data() + symmetric.size();
   const double* const bad = std::find_if(symmetric.data(), end, [](double entry) { return !std::isfinite(entry); });
   if (bad != end) return *bad;
-  MatrixX vectors = symmetric;
+  MatrixX work = symmetric;
   VectorX values;
-  symmetric_eigen(vectors, values);  // ascending
+  symmetric_eigenvalues(work, values);  // ascending
   return values[values.size() - 1];
 }
 

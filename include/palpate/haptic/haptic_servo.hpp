@@ -79,7 +79,8 @@ class HapticServo {
 
   /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
   /// thread; valid until the next tick.
-  TickView tick_view() const noexcept;
+  TickView tick_view() const& noexcept;
+  TickView tick_view() const&& = delete;
 
   /// The facets that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }

@@ -78,8 +78,8 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
 
 PALPATE_INLINE HapticServo::~HapticServo() = default;
 
-PALPATE_INLINE TickView HapticServo::tick_view() const noexcept {
-  return {tissue_, *problem_, hands_.data(), newest_->tool_contacts()};
+PALPATE_INLINE TickView HapticServo::tick_view() const& noexcept {
+  return {tissue_, *problem_, hands_.data(), newest_};
 }
 PALPATE_INLINE const ForceLimits& HapticServo::limits(std::size_t tool) const noexcept {
   return hands_[tool].gate.limits();

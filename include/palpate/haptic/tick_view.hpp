@@ -26,7 +26,7 @@ struct Hand;
 class TickView {
  public:
   /// Pressing contacts, grasped points and cutting blades, world frame.
-  std::span<const ToolContact> contacts() const noexcept { return contacts_; }
+  std::span<const ToolContact> contacts() const noexcept { return newest_->tool_contacts(); }
   /// Number of contact rows: points that press, and points that would have penetrated.
   int contact_rows() const noexcept;
   /// Penetration of the deepest point that had no row, relative to the deepest push: roughly the part of the force that
@@ -60,13 +60,13 @@ class TickView {
  private:
   friend class HapticServo;
   TickView(const TissueView& tissue, const ContactProblem& problem, const detail::Hand* hands,
-           std::span<const ToolContact> contacts) noexcept
-      : tissue_(tissue), problem_(problem), hands_(hands), contacts_(contacts) {}
+           const ServoSnapshot* const& newest) noexcept
+      : tissue_(tissue), problem_(problem), hands_(hands), newest_(newest) {}
 
   const TissueView& tissue_;
   const ContactProblem& problem_;
   const detail::Hand* hands_;  // one per tool
-  std::span<const ToolContact> contacts_;
+  const ServoSnapshot* const& newest_;
 };
 
 }}  // namespace palpate

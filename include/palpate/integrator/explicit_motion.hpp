@@ -142,9 +142,9 @@ class ExplicitMotion {
  public:
   /// `nodal_mass` [kg] per node; `free_dofs` ascending, all others are constrained at their position (set target() to
   /// move them); `frequency_bound` an upper bound of omega^2 at rest [1/s^2] (element_frequency_bound), which limits
-  /// the step until the estimate has StepLimit::settled iterations. Infinite without a bound; then the estimate needs
-  /// at least that many `first_iterations`. Throws bad_argument for sizes that do not fit and options out of range,
-  /// bad_density for a mass that is not positive.
+  /// the step until the estimate has StepLimit::trusted_iterations iterations. Infinite without a bound; then the
+  /// estimate needs at least that many `first_iterations`. Throws bad_argument for sizes that do not fit and options
+  /// out of range, bad_density for a mass that is not positive.
   ExplicitMotion(Force force, const VectorX& nodal_mass, const std::vector<Index>& free_dofs,
                  double frequency_bound = infinity, const ExplicitOptions& options = {})
       : force_(std::move(force)), options_(options), limit_(force_.size(), frequency_bound, options.margin) {

@@ -7,7 +7,6 @@
 #include <palpate/model/policies.hpp>
 #include <palpate/model/static/linear_tissue.hpp>
 
-#include <type_traits>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -39,13 +38,21 @@ template <class E, class M, class Solver>
 struct TissueOf : ModelArguments<E, M> {
   using Type = StaticTissue<E, M, Solver>;
 };
-/// As an argument: g++ 12 does not accept an alias template alone.
-template <class E, class M, class Solver>
-concept NamesTissue = requires {
-  typename std::type_identity<typename SolverTraits<Solver>::template Tissue<E, M>>;
+/// Whether the traits of a solver have a member named Tissue, of whatever kind: the name is then ambiguous here, so
+/// that one that does not fit is an error and not ignored.
+struct OtherTissue {
+  static int Tissue;
 };
-template <class E, class M, class Solver>
-requires NamesTissue<E, M, Solver>
+template <class Solver>
+struct TissueLookup : SolverTraits<Solver>, OtherTissue {};
+template <class Solver>
+concept NamesTissue = requires {
+  sizeof(SolverTraits<Solver>);
+}
+&&!requires {
+  TissueLookup<Solver>::Tissue;
+};
+template <class E, class M, NamesTissue Solver>
 struct TissueOf<E, M, Solver> : ModelArguments<E, M> {
   using Type = typename SolverTraits<Solver>::template Tissue<E, M>;
 };

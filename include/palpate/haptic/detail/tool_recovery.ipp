@@ -15,8 +15,8 @@ inline bool is_zero(const Vector3& v) noexcept {
 
 /// Whether nothing presses a tool any more but the linearisations of the tick ended before it reached its device.
 inline bool is_on_the_way(const ContactTool& tool) noexcept {
-  constexpr double near = 1e-6;  // radii
-  return tool.active && is_zero(tool.force) && (tool.target - tool.proxy).norm() > near * tool.radius;
+  constexpr double on_target = 1e-6;  // radii
+  return tool.active && is_zero(tool.force) && (tool.target - tool.proxy).norm() > on_target * tool.radius;
 }
 
 /// Notes whether a tool without force overlaps a part of the body that cannot be touched, and returns whether its proxy

@@ -10,14 +10,23 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// One column-major matrix that is overwritten by its eigenvectors, with the diagonal d and the subdiagonal e.
+/// One column-major matrix that is overwritten by its eigenvectors, if `vectors`, with the diagonal d and the
+/// subdiagonal e.
 class SymmetricEigen {
  public:
-  SymmetricEigen(MatrixX& matrix, VectorX& values)
-      : v_(matrix.data()), d_(values.data()), n_(matrix.rows()), beside_(zeros(n_)), e_(beside_.data()) {
+  SymmetricEigen(MatrixX& matrix, VectorX& values, bool vectors)
+      : v_(matrix.data()),
+        d_(values.data()),
+        n_(matrix.rows()),
+        beside_(zeros(n_)),
+        e_(beside_.data()),
+        has_vectors_(vectors) {
     for (Index j = 0; j < n_; ++j) d_[j] = at(n_ - 1, j);
     for (Index i = n_ - 1; i > 0; --i) reflect(i);
-    accumulate();
+    if (has_vectors_)
+      accumulate();
+    else
+      for (Index j = 0; j < n_; ++j) d_[j] = at(j, j);
     for (Index i = 1; i < n_; ++i) e_[i - 1] = e_[i];
     e_[n_ - 1] = 0.0;
     for (Index l = 0; l < n_; ++l) iterate(l);
@@ -130,7 +139,7 @@ class SymmetricEigen {
       c = p / r;
       p = c * d_[i] - s * g;
       d_[i + 1] = h + s * (c * g + s * d_[i]);
-      rotate(column(i), column(i + 1), c, s);
+      if (has_vectors_) rotate(column(i), column(i + 1), c, s);
     }
     p = -s * s2 * c3 * after * e_[l] / next;
     e_[l] = s * p;
@@ -159,6 +168,7 @@ class SymmetricEigen {
   Index n_;
   VectorX beside_;
   double* e_;
+  bool has_vectors_;
   double largest_ = 0.0, shifts_ = 0.0;
 };
 
@@ -167,7 +177,12 @@ class SymmetricEigen {
 /// Reinsch and Wilkinson 1968; EISPACK tred2 and tql2). About 9 n^3 multiplications. The entries must be finite.
 inline void symmetric_eigen(MatrixX& matrix, VectorX& values) {
   values.resize(matrix.rows());
-  if (matrix.rows() > 0) SymmetricEigen(matrix, values);
+  if (matrix.rows() > 0) SymmetricEigen(matrix, values, true);
+}
+/// Eigenvalues only; the matrix is overwritten. About 4/3 n^3 multiplications.
+inline void symmetric_eigenvalues(MatrixX& matrix, VectorX& values) {
+  values.resize(matrix.rows());
+  if (matrix.rows() > 0) SymmetricEigen(matrix, values, false);
 }
 
 }}}  // namespace palpate::detail
