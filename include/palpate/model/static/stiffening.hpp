@@ -197,8 +197,6 @@ struct StiffeningParameters {
 /// of HapticFEModel on Stiffening<Inner>.
 template <class E, class M, class Inner>
 class StiffeningTissue : public StaticTissue<E, M, Inner> {
-  static_assert(SolverPolicy<Inner>,
-                "palpate: Stiffening scales a static solver, for example Stiffening<Condensed<SelectiveInverse>>");
   using Linear = StaticTissue<E, M, Inner>;
 
  public:
@@ -267,6 +265,8 @@ class StiffeningTissue : public StaticTissue<E, M, Inner> {
 
 template <class Inner>
 struct SolverTraits<Stiffening<Inner>> {
+  static_assert(SolverPolicy<Inner>,
+                "palpate: Stiffening scales a static solver, for example Stiffening<Condensed<SelectiveInverse>>");
   template <class E, class M>
   using Tissue = StiffeningTissue<E, M, Inner>;
 };
