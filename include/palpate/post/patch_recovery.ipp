@@ -13,8 +13,6 @@ PALPATE_INLINE Vector3 PatchFrame::operator()(const Vector3& x) const noexcept {
   return map * (x - centre);
 }
 
-namespace detail {
-
 /// The inverse of the lower Cholesky factor of a symmetric matrix; not finite if the matrix is not positive definite.
 inline Matrix3 inverse_factor(const Matrix3& a) noexcept {
   const double l00 = std::sqrt(a(0, 0)), l10 = a(1, 0) / l00, l20 = a(2, 0) / l00;
@@ -30,8 +28,6 @@ inline Matrix3 inverse_factor(const Matrix3& a) noexcept {
   return inverse;
 }
 
-}  // namespace detail
-
 PALPATE_INLINE PatchFrame patch_frame(const std::vector<Vector3>& points) {
   PatchFrame frame{points.front(), Matrix3::Identity()};
   Vector3 shift = Vector3::Zero();
@@ -40,7 +36,7 @@ PALPATE_INLINE PatchFrame patch_frame(const std::vector<Vector3>& points) {
   Matrix3 covariance = Matrix3::Zero();
   for (const Vector3& p : points)
     covariance += (p - frame.centre) * (p - frame.centre).transpose() / static_cast<double>(points.size());
-  const Matrix3 inverse = detail::inverse_factor(covariance);
+  const Matrix3 inverse = inverse_factor(covariance);
   if (inverse.allFinite())
     frame.map = inverse;
   else if (covariance.trace() > 0.0)
