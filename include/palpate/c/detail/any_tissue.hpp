@@ -1,6 +1,7 @@
 // A tissue of any composition behind virtual functions; none of them is called in a tick.
 #pragma once
 
+#include <palpate/concepts/linear_solver.hpp>
 #include <palpate/contact/detail/blade_sweep.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/cut/cut_parameters.hpp>
