@@ -78,7 +78,7 @@ class HapticServo {
   void release() noexcept { tissue_.end_tick({}, {}); }
 
   /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
-  /// thread; valid until the next tick.
+  /// thread.
   TickView tick_view() const& noexcept;
   TickView tick_view() const&& = delete;
 

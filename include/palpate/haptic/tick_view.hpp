@@ -21,8 +21,8 @@ struct Hand;
 }  // namespace detail
 
 /// Contacts, proxies and forces after a tick of a HapticServo, and its energy tanks. For the thread that ticks, or
-/// while none does; valid until the next tick. Other threads read ServoSnapshot. Costs nothing to make: it refers to
-/// the servo.
+/// while none does; other threads read ServoSnapshot. Refers to the servo, which must outlive it, and always shows the
+/// last tick; a span of contacts is valid until the next one. Costs nothing to make.
 class TickView {
  public:
   /// Pressing contacts, grasped points and cutting blades, world frame.

@@ -100,8 +100,8 @@ class StaticTissue : public detail::StaticBase<M, Solver>::Type {
 /// motion, and by that the base with most functions: LinearTissue, MovingTissue, CuttableTissue or
 /// CuttableMovingTissue. The model is prepared once and copies the data it needs from mesh and scene. Afterwards only
 /// named calls change it (loads, prescribed values, gravity, pose, reset, cuts, steps). Satisfies TissueModel. Frames:
-/// see ModelBase. A solver whose traits name a class template `Tissue<E, M>` is that class; it has Parameters and a
-/// constructor like the second one below.
+/// see ModelBase. If SolverTraits<Solver> has a class template `Tissue<E, M>`, the model derives from it; it needs a
+/// type Parameters and a constructor with the arguments of the second constructor below.
 template <class E, class M, class Solver = Condensed<SelectiveInverse>>
 class HapticFEModel : public detail::TissueOf<E, M, Solver>::Type {
   using Tissue = typename detail::TissueOf<E, M, Solver>::Type;
