@@ -15,12 +15,12 @@
 #include <palpate/assembly/detail/incomplete_cholesky.ipp>
 #include <palpate/assembly/element_frequency.ipp>
 #include <palpate/assembly/load_vector.ipp>
+#include <palpate/contact/blade_cut.ipp>
 #include <palpate/contact/contact.ipp>
 #include <palpate/contact/contact_problem.ipp>
 #include <palpate/contact/contact_surface.ipp>
 #include <palpate/contact/convex_hull.ipp>
 #include <palpate/contact/coulomb_friction.ipp>
-#include <palpate/contact/detail/blade_cut.ipp>
 #include <palpate/contact/detail/bvh.ipp>
 #include <palpate/contact/detail/candidates.ipp>
 #include <palpate/contact/detail/candidates_search.ipp>

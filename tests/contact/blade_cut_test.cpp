@@ -1,5 +1,5 @@
 // Force and work of a sharp cut.
-#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/blade_cut.hpp>
 #include <palpate/testing/random.hpp>
 
 #include "refused.hpp"
@@ -10,7 +10,7 @@ using namespace palpate;
 
 TEST_CASE("the work of cutting is toughness times area", "[contact][blade]") {
   constexpr double stiffness = 400.0;
-  detail::BladeCut blade({.toughness = 200.0}, stiffness);
+  BladeCut blade({.toughness = 200.0}, stiffness);
   double work = 0.0;
   Vector3 hand(0, 0, 0), last = hand;
   blade.advance(hand, 0.0);
@@ -40,7 +40,7 @@ TEST_CASE("the work of cutting is toughness times area in every direction across
   testing::Random random(7);
   for (int trial = 0; trial < 20; ++trial) {
     const Vector3 edge = width * random.vector<3>(-1, 1).normalized();
-    detail::BladeCut blade({.edge = edge, .toughness = toughness}, stiffness);
+    BladeCut blade({.edge = edge, .toughness = toughness}, stiffness);
     Vector3 hand = random.vector<3>(-1, 1);
     const Vector3 along = edge.normalized();
     const Vector3 ahead = random.vector<3>(-1, 1), draw = 0.01 * random.uniform(-1, 1) * along;
@@ -74,7 +74,7 @@ TEST_CASE("the work of cutting is toughness times area in every direction across
 }
 
 TEST_CASE("a blade pays for every parallel slit, once", "[contact][blade]") {
-  detail::BladeCut blade({.edge = {0.0, 0.02, 0.0}, .toughness = 100.0}, 400.0);
+  BladeCut blade({.edge = {0.0, 0.02, 0.0}, .toughness = 100.0}, 400.0);
   const double hold = 100.0 * 0.02 / 400.0;
   double expected = 0.0;
   const auto press = [&](double x, double y) {
@@ -99,7 +99,7 @@ TEST_CASE("a blade pays for every parallel slit, once", "[contact][blade]") {
 }
 
 TEST_CASE("no motion of the hand gains energy from a blade", "[contact][blade]") {
-  detail::BladeCut blade({.toughness = 150.0}, 400.0);
+  BladeCut blade({.toughness = 150.0}, 400.0);
   testing::Random random(4);
   Vector3 hand = Vector3::Zero();
   blade.advance(hand, 0.01);
@@ -113,7 +113,7 @@ TEST_CASE("no motion of the hand gains energy from a blade", "[contact][blade]")
 }
 
 TEST_CASE("a blade after reset behaves as a new one", "[contact][blade]") {
-  detail::BladeCut used({.toughness = 150.0}, 400.0), fresh({.toughness = 150.0}, 400.0);
+  BladeCut used({.toughness = 150.0}, 400.0), fresh({.toughness = 150.0}, 400.0);
   testing::Random random(9);
   for (int i = 0; i < 100; ++i) used.advance(1e-3 * random.vector<3>(-1, 1), 0.01);
   used.reset();
@@ -129,9 +129,8 @@ TEST_CASE("a blade after reset behaves as a new one", "[contact][blade]") {
 TEST_CASE("invalid blades are refused", "[contact][blade]") {
   constexpr auto bad = SetupErrorKind::bad_argument;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double stiffness : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, detail::BladeCut({}, stiffness));
-  for (const double value : {0.0, -1.0, nan, infinity})
-    CHECK_REFUSED(bad, detail::BladeCut({.cut_spacing = value}, 400.0));
-  for (const double value : {-1.0, nan, infinity}) CHECK_REFUSED(bad, detail::BladeCut({.toughness = value}, 400.0));
-  CHECK_REFUSED(bad, detail::BladeCut({.edge = Vector3::Zero()}, 400.0));
+  for (const double stiffness : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({}, stiffness));
+  for (const double value : {0.0, -1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({.cut_spacing = value}, 400.0));
+  for (const double value : {-1.0, nan, infinity}) CHECK_REFUSED(bad, BladeCut({.toughness = value}, 400.0));
+  CHECK_REFUSED(bad, BladeCut({.edge = Vector3::Zero()}, 400.0));
 }

@@ -148,7 +148,7 @@ TEST_CASE("an undercut costs toughness times its area", "[cut][blade][extreme][F
   };
   s.position = {-0.004, 0.03, 0.0201};
   move({0.044, 0.03, 0.0201}, 960);
-  const detail::BladeCut& blade = *servo.tick_view().blade();
+  const BladeCut& blade = *servo.tick_view().blade();
   const double stretch = threshold / 500.0;  // of the coupling
   CHECK(blade.edge()[0] == Catch::Approx(0.044 - stretch).margin(1e-4));
   CHECK(most == Catch::Approx(threshold));

@@ -3,7 +3,6 @@
 
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/cut/cuttable_moving_tissue.hpp>
-#include <palpate/model/detail/admitted_mesh.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 namespace palpate { inline namespace PALPATE_ABI {
@@ -32,23 +31,13 @@ class CuttableMotionTissue : public CuttableMovingTissue<E> {
   CuttableMotionTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
                        const SetupOptions& options, const Parameters& parameters)
       : CuttableMovingTissue<E>(options) {
-    detail::require_step(parameters.step);
     if (parameters.large_strain_within < infinity || parameters.renew_factor)
       raise(SetupErrorKind::unsupported, "large_strain_within or renew_factor for tissue that is cut",
             "Leave both at their defaults");
-    detail::AdmittedMesh<E> admitted =
-        detail::admit_mesh<E>(mesh, scene, options.admission, this->limits(), this->setup_report());
-    const ScopedIdTranslation translation(admitted.ids);
-    HyperelasticBody<E, M> body = make_hyperelastic_body(std::move(admitted.mesh), materials);
-    auto rest = std::make_unique<detail::ElementBody<E>>(body.rest, admitted.origin);
-    rest->report_locking(this->setup_report());
-    const std::vector<BoundaryFace> boundary = rest->boundary();
-    const detail::Touchable touchable =
-        this->admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
-    const ScopedIdTranslation own(this->original_ids());  // those of `admitted` are moved from
-    if (parameters.settle || !parameters.inertia)
-      this->elastic_body().require_constrained(this->elastic_body().conditions(this->scene()));
-    this->template set_up_cuts<M, S>(std::move(body), boundary, touchable, parameters);
+    auto admitted = this->template admit_materials<E>(mesh, scene, materials, options, parameters);
+    const ScopedIdTranslation translation(this->original_ids());
+    this->template set_up_cuts<M, S>(std::move(admitted.body), detail::boundary_of<E>(this->elastic_body()),
+                                     admitted.touchable, parameters);
   }
 };
 

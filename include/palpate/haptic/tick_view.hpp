@@ -11,11 +11,11 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
+class BladeCut;
 class ContactProblem;
 
 namespace detail {
 
-class BladeCut;
 struct Hand;
 
 }  // namespace detail
@@ -53,7 +53,7 @@ class TickView {
   /// Whether a tool grasps a point of the surface.
   bool is_holding(std::size_t tool = 0) const noexcept;
   /// State of a blade; null for another tool.
-  const detail::BladeCut* blade(std::size_t tool = 0) const noexcept;
+  const BladeCut* blade(std::size_t tool = 0) const noexcept;
   /// Energy tank of a tool; null without one.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept;
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/contact/contact_problem.hpp>
-#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/blade_cut.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/haptic/detail/hand.hpp>
 #include <palpate/haptic/tick_view.hpp>
@@ -24,7 +24,7 @@ PALPATE_INLINE double TickView::indentation(std::size_t tool) const noexcept {
 PALPATE_INLINE bool TickView::is_holding(std::size_t tool) const noexcept {
   return problem_.is_holding(tool);
 }
-PALPATE_INLINE const detail::BladeCut* TickView::blade(std::size_t tool) const noexcept {
+PALPATE_INLINE const BladeCut* TickView::blade(std::size_t tool) const noexcept {
   return hands_[tool].blade ? &hands_[tool].blade->cut() : nullptr;
 }
 PALPATE_INLINE const EnergyTank* TickView::energy(std::size_t tool) const noexcept {

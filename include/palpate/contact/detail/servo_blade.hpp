@@ -1,7 +1,7 @@
 // A blade as the servo has it.
 #pragma once
 
-#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/blade_cut.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/status.hpp>

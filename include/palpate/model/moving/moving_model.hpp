@@ -54,6 +54,25 @@ inline void require_step(double step) {
 
 }  // namespace detail
 
+template <Element E, class Given, class M, class Parameters>
+auto MovingTissue::admit_materials(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                                   const SetupOptions& options, const Parameters& parameters) {
+  detail::require_step(parameters.step);
+  detail::AdmittedMesh<E> admitted = detail::admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
+  const ScopedIdTranslation translation(admitted.ids);
+  auto body = detail::make_any_body(std::move(admitted.mesh), materials);
+  auto rest = std::make_unique<detail::ElementBody<E>>(detail::rest_body(body), admitted.origin);
+  rest->report_locking(setup_report());
+  detail::Touchable touchable =
+      admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
+  const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
+  bool must_hold = false;                         // without supports there is no equilibrium
+  if constexpr (requires { parameters.settle; }) must_hold = parameters.settle;
+  if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
+  if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
+  return AdmittedMaterials<decltype(body)>{std::move(body), std::move(touchable)};
+}
+
 /// Moving tissue of element `E`, material `M` and a solver with SolverTraits::make_motion; see MovingTissue. Base of
 /// HapticFEModel on such a solver. Initial strains are supported for linear materials only. Set-up solves once per
 /// touchable dof.
@@ -63,30 +82,21 @@ class MotionTissue : public MovingTissue {
   using Parameters = typename SolverTraits<Solver>::Parameters;
 
  protected:
-  /// Throws the errors of admission, assembly and the motion, bad_argument for a step that is not positive,
-  /// not_converged when no initial equilibrium is found, unsupported for a cache file.
+  /// Throws as admit_materials, the errors of assembly and the motion, not_converged when no initial equilibrium is
+  /// found, unsupported for a cache file.
   template <MeshOf<E> Given>
   MotionTissue(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials, const SetupOptions& options,
                const Parameters& parameters)
       : MovingTissue(options) {
-    detail::require_step(parameters.step);
-    detail::AdmittedMesh<E> admitted = detail::admit_mesh<E>(mesh, scene, options.admission, limits(), setup_report());
-    const ScopedIdTranslation translation(admitted.ids);
-    auto body = detail::make_any_body(std::move(admitted.mesh), materials);
-    auto rest = std::make_unique<detail::ElementBody<E>>(detail::rest_body(body), admitted.origin);
-    rest->report_locking(setup_report());
-    detail::Touchable touchable =
-        admit(scene, {std::move(rest), std::move(admitted.node_map), std::move(admitted.ids), admitted.origin});
+    auto admitted = admit_materials<E>(mesh, scene, materials, options, parameters);
     if constexpr (
-        requires { typename M::LargeStrainHistory; } || requires { body.fast.mesh; })
-      touchable.elements.clear();                   // the dent of a small tool relaxes, its law does not
-    const ScopedIdTranslation own(original_ids());  // those of `admitted` are moved from
-    bool must_hold = false;                         // without supports there is no equilibrium
-    if constexpr (requires { parameters.settle; }) must_hold = parameters.settle;
-    if constexpr (requires { parameters.inertia; }) must_hold = must_hold || !parameters.inertia;
-    if (must_hold) elastic_body().require_constrained(elastic_body().conditions(this->scene()));
-    PreparedMotion prepared = SolverTraits<Solver>::make_motion(std::move(body), this->scene(), parameters, limits());
-    set_up(touchable, std::move(prepared), parameters.step, detail::block_pattern(detail::mesh_of<E>(elastic_body())));
+        requires { typename M::LargeStrainHistory; } || requires { admitted.body.fast.mesh; })
+      admitted.touchable.elements.clear();  // the dent of a small tool relaxes, its law does not
+    const ScopedIdTranslation translation(original_ids());
+    PreparedMotion prepared =
+        SolverTraits<Solver>::make_motion(std::move(admitted.body), this->scene(), parameters, limits());
+    set_up(admitted.touchable, std::move(prepared), parameters.step,
+           detail::block_pattern(detail::mesh_of<E>(elastic_body())));
   }
 };
 

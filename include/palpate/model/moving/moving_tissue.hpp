@@ -2,6 +2,8 @@
 #pragma once
 
 #include <palpate/concepts/linear_solver.hpp>
+#include <palpate/concepts/element.hpp>
+#include <palpate/concepts/material.hpp>
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/contact/contact.hpp>
@@ -17,6 +19,7 @@
 #include <palpate/model/moving/detail/vertex_compliance.hpp>
 #include <palpate/model/moving/tissue_motion.hpp>
 #include <palpate/model/detail/nodal_rotation.hpp>
+#include <palpate/model/detail/touchable.hpp>
 
 #include <array>
 #include <atomic>
@@ -150,6 +153,18 @@ class MovingTissue : public ModelBase {
   explicit MovingTissue(const SetupOptions& options);
   virtual ~MovingTissue();
 
+  /// A body of some materials, and what of it can be touched.
+  template <class MaterialBody>
+  struct AdmittedMaterials {
+    MaterialBody body;
+    detail::Touchable touchable;
+  };
+  /// Admits a mesh and evaluates its materials. Throws the errors of admission, bad_argument for a step that is not
+  /// positive, unconstrained for a body that can move where `parameters` ask for an equilibrium. Definition:
+  /// model/moving/moving_model.hpp.
+  template <Element E, class Given, class M, class Parameters>
+  auto admit_materials(const Given& mesh, const Scene& scene, const RegionMaterials<M>& materials,
+                       const SetupOptions& options, const Parameters& parameters);
   /// The part of the set-up after the motion is prepared. Solves once per touchable dof. Throws not_converged and the
   /// errors of WarpedCompliance.
   void set_up(const detail::Touchable& touchable, PreparedMotion prepared, double step,

@@ -7,7 +7,9 @@
 
 #include <array>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
 
 /// Surfaces swept by an edge of fixed direction, as strips: each is a segment across the edge, and the range of the
 /// middle of the edge along itself. The newest `most` are kept. Points have no component along the edge. Neither throws
@@ -52,6 +54,8 @@ class BladeSlits {
   int count_ = 0, next_ = 0;
 };
 
+}  // namespace detail
+
 /// The edge as a slider with a threshold: it stays in place until the coupling pulls across it with toughness times the
 /// length of the edge in the tissue, in any direction, and then advances under exactly that force. The work done is
 /// therefore toughness times the area cut, up to rounding, and no motion of the hand gains energy (Griffith's balance
@@ -91,15 +95,15 @@ class BladeCut {
   double stiffness_, length_;  // of the edge
   Vector3 direction_;          // of the edge
   Vector3 edge_ = Vector3::Zero(), cut_from_ = Vector3::Zero(), hand_ = Vector3::Zero();
-  BladeSlits slits_;
+  detail::BladeSlits slits_;
   Vector3 place_ = Vector3::Zero();  // of the edge in a slit, across it
   double slack_ = 0.0;               // distance from it that is free
   double area_ = 0.0, work_ = 0.0;
   bool known_ = false, inside_ = false;
 };
 
-}}}  // namespace palpate::detail
+}}  // namespace palpate
 
 #if PALPATE_HEADER_ONLY
-#include <palpate/contact/detail/blade_cut.ipp>
+#include <palpate/contact/blade_cut.ipp>
 #endif

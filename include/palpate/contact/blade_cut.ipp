@@ -1,13 +1,15 @@
 // Definitions of blade_cut.hpp.
 #pragma once
 
-#include <palpate/contact/detail/blade_cut.hpp>
+#include <palpate/contact/blade_cut.hpp>
 #include <palpate/core/setup_error.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+namespace palpate { inline namespace PALPATE_ABI {
+
+namespace detail {
 
 PALPATE_INLINE void BladeSlits::append(const Strip& made, double length, double largest_bend) noexcept {
   const int newest = (next_ + most - 1) % most;
@@ -83,6 +85,8 @@ PALPATE_INLINE BladeSlits::Slide BladeSlits::find_slide(const Vector3& x, const 
   return best;
 }
 
+}  // namespace detail
+
 PALPATE_INLINE BladeCut::BladeCut(const BladeTool& tool, double stiffness) : tool_(tool), stiffness_(stiffness) {
   tool.require_valid();
   if (!(stiffness > 0.0 && stiffness < infinity))
@@ -113,7 +117,7 @@ PALPATE_INLINE bool BladeCut::slide(const Vector3& target, double along, double 
   const double threshold = tool_.toughness * width;
   bool freely = false;
   for (int k = 0; k < most_slides; ++k) {
-    const BladeSlits::Slide s = slits_.find_slide(place_, target, along, length_, threshold / stiffness_);
+    const detail::BladeSlits::Slide s = slits_.find_slide(place_, target, along, length_, threshold / stiffness_);
     if (s.strip < 0) break;
     const double path = (s.to - place_).norm();
     work_ += s.fresh * threshold * path;
@@ -162,4 +166,4 @@ PALPATE_INLINE Vector3 BladeCut::advance(const Vector3& hand, double width) noex
   return -stiffness_ * (hand - edge_);
 }
 
-}}}  // namespace palpate::detail
+}}  // namespace palpate
