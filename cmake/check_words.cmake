@@ -1,6 +1,6 @@
 # Checks that no word is used that docs/vocabulary.md replaces: the code words of the first column of its last table, as
-# whole words or as parts of an identifier, in sources and pages. In the library, no name that is a macro elsewhere. In tests, neither is Approx without its namespace: that
-# compiles with Catch2 v2 only.
+# whole words or as parts of an identifier, in sources and pages. In the library, no name is used that is a macro
+# elsewhere. In tests, neither is Approx without its namespace: that compiles with Catch2 v2 only.
 #   cmake -P cmake/check_words.cmake
 cmake_minimum_required(VERSION 3.21)
 
