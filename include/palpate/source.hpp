@@ -37,7 +37,6 @@
 #include <palpate/contact/force_accuracy.ipp>
 #include <palpate/contact/grasp.ipp>
 #include <palpate/contact/subfacet_compliance.ipp>
-#include <palpate/contact/tissue_group.ipp>
 #include <palpate/contact/tools.ipp>
 #include <palpate/core/executor.ipp>
 #include <palpate/core/rigid_motion.ipp>
@@ -51,8 +50,10 @@
 #include <palpate/device/simulated_device.ipp>
 #include <palpate/device/trajectory.ipp>
 #include <palpate/haptic/background_worker.ipp>
+#include <palpate/haptic/detail/shared_tools.ipp>
 #include <palpate/haptic/detail/tool_input.ipp>
 #include <palpate/haptic/detail/tool_recovery.ipp>
+#include <palpate/haptic/detail/touched_tissue.ipp>
 #include <palpate/haptic/energy_tank.ipp>
 #include <palpate/haptic/force_gate.ipp>
 #include <palpate/haptic/haptic_loop.ipp>

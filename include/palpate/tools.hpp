@@ -1,5 +1,5 @@
-// Include next to palpate.hpp for several tissues that one tool touches. All tools are in palpate.hpp: sphere, capsule,
-// ConvexTool, BladeTool, and grasps; their code is compiled only where they are used.
+// All tools and TissueGroup, which palpate.hpp has, too: sphere, capsule, ConvexTool, BladeTool, and grasps. Their code
+// is compiled only where they are used.
 #pragma once
 
 #include <palpate/contact/convex_hull.hpp>

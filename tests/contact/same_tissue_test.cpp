@@ -1,6 +1,5 @@
-// Adaptors that change nothing and groups of one give the forces, flags and errors of the tissue to the last bit.
+// Adaptors that change nothing give the forces, flags and errors of the tissue to the last bit.
 #include <palpate/concepts/tissue_adaptor.hpp>
-#include <palpate/contact/tissue_group.hpp>
 #include <palpate/cut/cuttable.hpp>
 #include <palpate/element/wrappers.hpp>
 #include <palpate/material/neo_hookean.hpp>
@@ -68,7 +67,7 @@ Model pad(const SetupOptions& options = {.columns = ColumnFill::synchronous}, co
   return test::make_pad<Model>(touched, 1e4, {6, 6, 4}, options);
 }
 
-/// The laws for an adaptor, an adaptor of that, a group, and combinations of these.
+/// The laws for an adaptor and an adaptor of that.
 template <class T>
 void check_still(T& tissue, const ToolList& tools, std::span<const ToolState> path, const ServoOptions& options = {}) {
   const auto laws = [&](auto& same) {
@@ -76,19 +75,13 @@ void check_still(T& tissue, const ToolList& tools, std::span<const ToolState> pa
   };
   Unchanged<T> adaptor(tissue);
   Unchanged<Unchanged<T>> twice(adaptor);
-  TissueGroup group(tissue), group_of_adaptor(twice), group_of_group(group);
-  Unchanged<TissueGroup> adaptor_of_group(group);
   laws(adaptor);
   laws(twice);
-  laws(group);
-  laws(group_of_adaptor);
-  laws(group_of_group);
-  laws(adaptor_of_group);
 }
 
 }  // namespace
 
-TEST_CASE("a still tissue is the same through adaptors and in a group of one", "[contact][group][tissue]") {
+TEST_CASE("a still tissue is the same through adaptors", "[contact][tissue]") {
   auto tissue = pad<test::Pad>();
   SECTION("where it is") {
     const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height, 3e-3);
@@ -134,27 +127,7 @@ TEST_CASE("a still tissue is the same through adaptors and in a group of one", "
   }
 }
 
-TEST_CASE("an update of a group of one that has not changed keeps its bits", "[contact][group][tissue]") {
-  auto tissue = pad<test::Pad>();
-  TissueGroup group(tissue);
-  const auto path = press_and_slide(Eigen::Isometry3d::Identity(), test::pad_height, 3e-3);
-  HapticServo alone(tissue, SphereTool{.radius = radius}), grouped(group, SphereTool{.radius = radius});
-  int different = 0, pressed = 0;
-  for (std::size_t k = 0; k < path.size(); ++k) {
-    if (k % 50 == 49) {
-      tissue.set_pose(tissue.pose());
-      group.update();
-    }
-    alone.tick(path[k]);
-    grouped.tick(path[k]);
-    pressed += alone.tick_view().contact_force().norm() > 0.0;
-    different += alone.tick_view().contact_force() != grouped.tick_view().contact_force();
-  }
-  CHECK(pressed > 100);
-  CHECK(different == 0);
-}
-
-TEST_CASE("measured errors of forces are the same through adaptors and in a group of one", "[contact][group][tissue]") {
+TEST_CASE("measured errors of forces are the same through adaptors", "[contact][tissue]") {
   Scene scene;
   scene.fix("z0").touch(where::sphere({0.015, 0.015, test::pad_height}, 6e-3), {.radius = radius});
   SetupOptions options;
@@ -169,32 +142,6 @@ TEST_CASE("measured errors of forces are the same through adaptors and in a grou
   check_still(tissue, SphereTool{.radius = radius}, path, corrected);
   const auto ticks = testing::detail::run_session(tissue, SphereTool{.radius = radius}, path, {});
   CHECK(std::ranges::any_of(ticks, [](const auto& t) { return t.error.force > 0.0 && t.error.bound < infinity; }));
-}
-
-TEST_CASE("in a group of two, each member keeps what is known of its errors", "[contact][group][tissue]") {
-  auto left = pad<test::Pad>(), right = pad<test::Pad>();
-  testing::Random random(7);
-  Eigen::Isometry3d pose(Eigen::Translation3d(0.3, 0.1, -0.2));
-  pose.linear() = testing::random_rotation(random);
-  right.set_pose(pose);
-  TissueGroup group(left, right);
-  for (const Eigen::Isometry3d& at : {Eigen::Isometry3d::Identity(), pose}) {
-    const auto path = press_and_slide(at, test::pad_height, 0.9 * radius);
-    const ToolList tool = SphereTool{.radius = radius};
-    const auto alone = testing::detail::run_session(at.isApprox(pose) ? right : left, tool, path, {});
-    const auto together = testing::detail::run_session(group, tool, path, {});
-    double worst = 0.0, error = 0.0, largest = 0.0;
-    int differing = 0;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      largest = std::max(largest, alone[i].contact_force.norm());
-      worst = std::max(worst, (alone[i].contact_force - together[i].contact_force).norm());
-      error = std::max(error, std::abs(alone[i].error.parts.linearity - together[i].error.parts.linearity));
-      differing += alone[i].status != together[i].status;
-    }
-    CHECK(worst <= 1e-6 * largest);
-    CHECK(error <= 1e-6 * largest);
-    CHECK(differing <= 2);  // of flags at their thresholds, by rounding
-  }
 }
 
 TEST_CASE("tissue that moves or is cut is the same through adaptors", "[contact][tissue]") {

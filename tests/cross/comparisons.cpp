@@ -141,10 +141,10 @@ std::vector<Finding> check_split(const Scene& s, const Run& r) {
   return compare_with("two equal regions", s, r, {.change = {.split = true}}, rounding_tolerance(s));
 }
 std::vector<Finding> check_group(const Scene& s, const Run& r) {
-  return compare_with("group of one", s, r, {.member = "group"}, 0.0);
+  return compare_with("group of one", s, r, {.member = "group"}, exactly(s));
 }
 std::vector<Finding> check_pair(const Scene& s, const Run& r) {
-  return compare_with("group of two", s, r, {.member = "pair"}, rounding_tolerance(s));
+  return compare_with("group of two", s, r, {.member = "pair"}, exactly(s));
 }
 std::vector<Finding> check_adaptor(const Scene& s, const Run& r) {
   return compare_with("adaptor", s, r, {.member = "adaptor"}, exactly(s));
@@ -453,8 +453,8 @@ const std::vector<Oracle>& comparisons() {
       {"renumbered", 1, always, check_renumbered},
       {"two equal regions", 1, [](const Scene& s) { return s.regions == "one" && s.element != "smoothed_tet4"; },
        check_split},
-      {"group of one", 1, [](const Scene& s) { return is_alone(s) && can_be_grouped(s.solver); }, check_group},
-      {"group of two", 2, [](const Scene& s) { return is_alone(s) && can_be_grouped(s.solver); }, check_pair},
+      {"group of one", 1, is_alone, check_group},
+      {"group of two", 2, is_alone, check_pair},
       {"adaptor", 1, is_alone, check_adaptor},
       {"three threads", 1, always, check_threads},
       {"read from a cache", 2,

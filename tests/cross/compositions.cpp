@@ -43,10 +43,6 @@ bool can_be_cut(const std::string& solver) {
   return solver.starts_with("cut_");
 }
 
-bool can_be_grouped(const std::string& solver) {
-  return !moves(solver) && !can_be_cut(solver) && solver != "stiffening";
-}
-
 bool has_float(const std::string& solver) {
   return solver.ends_with("_float") || solver == "corotated_cg";
 }

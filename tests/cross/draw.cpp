@@ -178,7 +178,7 @@ class Draw {
     scene_.ticks = scene_.rate * 3 / 10;
     if (chance(0.15)) scene_.threads = 3;
     if (chance(0.25)) scene_.pose = "rotated";
-    if (chance(0.25)) scene_.member = can_be_grouped(scene_.solver) ? one_of(words_of("member")) : "adaptor";
+    if (chance(0.25)) scene_.member = one_of(words_of("member"));
     if (moves(scene_.solver)) {
       scene_.step =
           scene_.solver.find("newton") != std::string::npos ? one_of(std::vector<double>{0.005, 0.01, 0.02}) : 1e-3;
@@ -268,7 +268,6 @@ bool allows(const Composition& c, const Choice& choice) {
   if (axis == "element") return c.element == word;
   if (axis == "law") return c.law == word;
   if (axis == "solver") return c.solver == word;
-  if (axis == "member" && (word == "group" || word == "pair")) return can_be_grouped(c.solver);
   if ((axis == "tool" && word == "blade") || (axis == "cuts" && word == "1")) return can_be_cut(c.solver);
   Scene scene;
   scene.element = c.element;

@@ -211,8 +211,7 @@ class Player {
       run_.peak = std::max(run_.peak, r.force.norm());
     }
     const ServoSnapshot& snapshot = servo_->read_snapshot();
-    for (std::size_t i = 0; i < snapshot.force_count; ++i)
-      sum += pose_.linear() * snapshot.forces[i].force.in_model_axes();
+    for (const VertexForce& f : snapshot.vertex_forces()) sum += pose_.linear() * f.force.in_model_axes();
     run_.imbalance.push_back(sum.norm() / (s * s));
     if (tick == last_hold(scene_) - 1) run_.penetration = penetration(snapshot) / s;
     add_work(record);
@@ -242,7 +241,7 @@ class Player {
   /// Of vertices with facets that are no longer than the radius: the dents of others are between the vertices.
   double penetration(const ServoSnapshot& snapshot) {
     double deepest = 0.0;
-    const std::vector<Vector3> surface = tissue_->surface({snapshot.forces.data(), snapshot.force_count});
+    const std::vector<Vector3> surface = tissue_->surface(snapshot.vertex_forces());
     const std::vector<double> facets = tissue_->facet_lengths();
     for (std::size_t t = 0; t < scene_.tools.size(); ++t) {
       if (scene_.tools[t].kind != "sphere") continue;

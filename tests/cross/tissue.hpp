@@ -58,8 +58,6 @@ const Composition* find_composition(const std::string& element, const std::strin
 
 bool moves(const std::string& solver);
 bool can_be_cut(const std::string& solver);
-/// Whether a tissue of this solver can be in a group.
-bool can_be_grouped(const std::string& solver);
 /// Whether a solver computes in single precision.
 bool has_float(const std::string& solver);
 

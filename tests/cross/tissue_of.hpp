@@ -15,7 +15,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -31,9 +30,6 @@ class TissueOf final : public Tissue {
 
   TissueOf(const Make& make, const Body& body, const TissueOptions& options)
       : member_(options.member), distance_(10.0 * body.size), model_(make()) {
-    if (member_ == "group" || member_ == "pair")
-      if (!palpate::detail::HooksOnlyPrefetch<Model>)
-        throw std::runtime_error("tissue of this solver cannot be in a group");
     if (member_ == "pair") second_ = make();
     if (member_ == "adaptor") adaptor_.emplace(*model_);
     place();
@@ -42,7 +38,9 @@ class TissueOf final : public Tissue {
   std::unique_ptr<palpate::HapticServo> servo(const palpate::ToolList& tools,
                                               const palpate::ServoOptions& options) override {
     if (adaptor_) return std::make_unique<palpate::HapticServo>(*adaptor_, tools, options);
-    if (make_group()) return std::make_unique<palpate::HapticServo>(*group_, tools, options);
+    palpate::TissueGroup group(*model_);
+    if (second_) group.add(*second_);
+    if (member_ == "group" || member_ == "pair") return std::make_unique<palpate::HapticServo>(group, tools, options);
     return std::make_unique<palpate::HapticServo>(*model_, tools, options);
   }
   double interval() const override {
@@ -52,10 +50,8 @@ class TissueOf final : public Tissue {
       return palpate::HasBackgroundWork<Model> ? 1e-3 : 0.0;
   }
   void work() override {
-    if constexpr (requires { model_->step(); })
-      model_->background_work();
-    else if constexpr (palpate::HasBackgroundWork<Model>)
-      while (model_->background_work().worked) continue;
+    work_of(*model_);
+    if (second_) work_of(*second_);
   }
   std::unique_ptr<palpate::BackgroundWorker> worker() override {
     if (adaptor_) return std::make_unique<palpate::BackgroundWorker>(*adaptor_);
@@ -86,13 +82,17 @@ class TissueOf final : public Tissue {
     return false;
   }
   std::vector<palpate::Vector3> surface(std::span<const palpate::VertexForce> forces) override {
-    return group_ ? pressed_surface(*group_, forces) : pressed_surface(*model_, forces);
+    return pressed_surface(*model_, forces);
   }
-  std::vector<double> facet_lengths() override {
-    return group_ ? longest_edges(group_->contact_surface()) : longest_edges(model_->contact_surface());
-  }
+  std::vector<double> facet_lengths() override { return longest_edges(model_->contact_surface()); }
 
  private:
+  static void work_of(Model& model) {
+    if constexpr (requires { model.step(); })
+      model.background_work();
+    else if constexpr (palpate::HasBackgroundWork<Model>)
+      while (model.background_work().worked) continue;
+  }
   static std::vector<double> longest_edges(const palpate::ContactSurface& surface) {
     std::vector<double> longest(static_cast<std::size_t>(surface.vertex_count()), 0.0);
     for (const palpate::Triangle& triangle : surface.triangles())
@@ -117,22 +117,10 @@ class TissueOf final : public Tissue {
     }
     return surface;
   }
-  /// The first is at the pose, so that a group has the frame of a tissue alone.
+  /// The second one is beside the first, out of reach.
   void place() {
     if (!model_->pose().isApprox(pose_, 0.0)) model_->set_pose(pose_);
     if (second_) second_->set_pose(pose_ * Eigen::Translation3d(distance_, distance_, 0.0));
-    if (group_) group_->update();
-  }
-  /// Made for the first servo, after the pose is known: a group keeps the frame that its first member had.
-  bool make_group() {
-    if (member_ != "group" && member_ != "pair") return false;
-    if constexpr (palpate::detail::HooksOnlyPrefetch<Model>)
-      if (!group_) {
-        std::vector<Model*> members{model_.get()};
-        if (second_) members.push_back(second_.get());
-        group_.emplace(std::span<Model* const>(members));
-      }
-    return true;
   }
 
   std::string member_;
@@ -140,7 +128,6 @@ class TissueOf final : public Tissue {
   std::shared_ptr<Model> model_, second_;  // shared: a base may have no public destructor
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::optional<palpate::TissueAdaptor<Model>> adaptor_;
-  std::optional<palpate::TissueGroup> group_;
 };
 
 /// `word` of a solver and, where its models have parameters, `make<Model>(scene, body, construct)`: what

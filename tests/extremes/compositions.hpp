@@ -106,32 +106,30 @@ Model make_block() {
   return Model(mesh, scene, Material{5e3, 0.4, 1000.0});
 }
 
-/// One model, as the tissue of a session or as a member of a group.
+/// One model, as the tissue of a session or as a member of a group, beside another one that no tool reaches.
 template <class Model>
 struct Body {
   Model model;
   std::optional<Model> second;
-  std::optional<TissueGroup> group;
 
   explicit Body(bool grouped) : model(make_block<Model>()) {
-    if constexpr (detail::HooksOnlyPrefetch<Model>) {
-      if (!grouped) return;
-      second.emplace(make_block<Model>());
-      second->set_pose(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.0)));
-      group.emplace(model, *second);
-    }
+    if (!grouped) return;
+    second.emplace(make_block<Model>());
+    second->set_pose(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.0)));
   }
   /// Background work, and a cut of the middle of the body in tick 60, where it can be cut.
   void between_ticks(int tick, bool steps) {
     if constexpr (HasBackgroundWork<Model>)
-      if (steps && tick % 8 == 7) model.background_work();
+      if (steps && tick % 8 == 7) {
+        model.background_work();
+        if (second) second->background_work();
+      }
     if constexpr (requires { model.cut_report(); })
       if (tick == 60) model.cut(BladeSweep{{0.031, -1, 0.01}, {0.031, 1, 0.01}, {0.031, -1, 1}, {0.031, 1, 1}});
   }
   void reset() {
     model.reset();
     if (second) second->reset();
-    if (group) group->update();
   }
 };
 
@@ -188,34 +186,35 @@ void run_all() {
   constexpr bool can_be_cut = requires(Model & m) {
     m.cut_report();
   };
-  constexpr bool can_be_grouped = detail::HooksOnlyPrefetch<Model>;
   bool rough = false;
   for (const Tools& tools : kinds_of_tools()) {
     if (tools.cuts && !can_be_cut) continue;
     for (const bool own_loop : {true, false})
       for (const bool with_worker : {false, true})
         for (const bool grouped : {false, true}) {
-          if (grouped && !can_be_grouped) continue;
+          if (grouped && own_loop != with_worker) continue;
           INFO(tools.name << (own_loop ? ", own loop" : ", session")
                           << (with_worker ? ", worker" : ", steps in the loop")
                           << (grouped ? ", in a group" : ", alone"));
           Body<Model> body(grouped);
           std::optional<BackgroundWorker> worker;
           if (with_worker) worker.emplace(body.model);
+          std::optional<BackgroundWorker> second_worker;
+          if (with_worker && body.second) second_worker.emplace(*body.second);
           ServoOptions options;
           options.devices = {{.stiffness = 1000.0}};
           options.grasp_buttons = tools.grasps ? 1u : 0u;
           options.contact.friction = std::exchange(rough, !rough) ? 0.4 : 0.0;
           const auto between = [&](int tick) { body.between_ticks(tick, !with_worker); };
           const auto reset = [&] { body.reset(); };
-          const auto run = [&](auto& tissue) {
+          const auto run = [&](auto&& tissue) {
             if (own_loop)
               run_own_loop(tissue, tools, options, with_worker, between, reset);
             else
               run_session(tissue, tools, options, between, reset);
           };
-          if (body.group)
-            run(*body.group);
+          if (body.second)
+            run(TissueGroup(body.model, *body.second));
           else
             run(body.model);
         }

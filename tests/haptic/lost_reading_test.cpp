@@ -145,7 +145,7 @@ TEST_CASE("where the tissue keeps a part of the force of a lost tool for a tick,
     Vector3 sum =
         servo.tick_view().contact_force(0) + servo.tick_view().contact_force(1) + servo.tick_view().contact_force(2);
     const ServoSnapshot& snapshot = servo.read_snapshot();
-    for (std::size_t i = 0; i < snapshot.force_count; ++i) sum += snapshot.forces[i].force.in_model_axes();
+    for (const VertexForce& f : snapshot.vertex_forces()) sum += f.force.in_model_axes();
     if (sum.norm() <= 0.01 * force) continue;
     CAPTURE(k, sum.norm(), force);
     CHECK(status.has(StatusFlag::solver_not_converged));
@@ -168,5 +168,5 @@ TEST_CASE("a tool that cannot be read leaves no force on the tissue", "[haptic][
     if (k == 85) REQUIRE(servo.tick_view().contact_force().norm() > 0.05);
   }
   const ServoSnapshot& snapshot = servo.read_snapshot();
-  for (std::size_t i = 0; i < snapshot.force_count; ++i) CHECK(snapshot.forces[i].force.in_model_axes().norm() == 0.0);
+  for (const VertexForce& f : snapshot.vertex_forces()) CHECK(f.force.in_model_axes().norm() == 0.0);
 }

@@ -1,12 +1,12 @@
 // expect: this tissue changes the compliance that it inherits
 #include <palpate/concepts/tissue_adaptor.hpp>
-#include <palpate/contact/tissue_group.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
+#include <palpate/model/static/linear_tissue.hpp>
 
 using namespace palpate;
 
 /// Twice as soft as the tissue, with its own revision and floor; the good twin also has its own bound.
-struct Softer : TissueAdaptor<TissueGroup> {
+struct Softer : TissueAdaptor<LinearTissue<double>> {
   using TissueAdaptor::TissueAdaptor;
   Matrix3 compliance(int i, int j) const noexcept { return 2.0 * tissue().compliance(i, j); }
   std::uint64_t compliance_revision() const noexcept { return tissue().compliance_revision(); }
@@ -18,7 +18,7 @@ struct Softer : TissueAdaptor<TissueGroup> {
 #endif
 };
 
-void touch(TissueGroup& group) {
-  Softer softer(group);
+void touch(LinearTissue<double>& organ) {
+  Softer softer(organ);
   HapticServo servo(softer, SphereTool{4e-3});
 }

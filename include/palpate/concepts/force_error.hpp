@@ -23,6 +23,10 @@ struct ForceErrorParts {
   ForceErrorParts operator*(double f) const noexcept {
     return {f * mesh, f * storage, f * conditioning, f * linearity, f * late, f * merged};
   }
+  ForceErrorParts& operator+=(const ForceErrorParts& more) noexcept {
+    return *this = {mesh + more.mesh,           storage + more.storage, conditioning + more.conditioning,
+                    linearity + more.linearity, late + more.late,       merged + more.merged};
+  }
   double sum() const noexcept { return mesh + storage + conditioning + linearity + late + merged; }
   /// The parts in this order, and their names, for reports.
   std::array<double, 6> values() const noexcept { return {mesh, storage, conditioning, linearity, late, merged}; }

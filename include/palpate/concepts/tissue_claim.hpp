@@ -40,8 +40,8 @@ class ClaimedTissue {
   ~ClaimedTissue() {
     if (taken_ != nullptr) taken_->store(false);
   }
-  ClaimedTissue(const ClaimedTissue&) = delete;
-  ClaimedTissue& operator=(const ClaimedTissue&) = delete;
+  ClaimedTissue(ClaimedTissue&&) = default;
+  ClaimedTissue& operator=(ClaimedTissue&&) = delete;
 
  private:
   TissueClaim::Taken taken_;

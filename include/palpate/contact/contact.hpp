@@ -17,6 +17,9 @@ inline constexpr int largest_default_capacity =
     capacity_at_large_strain *
     (default_contact_capacity + default_capacity_per_tool * (static_cast<int>(maximum_tools) - 1));
 
+/// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
+inline constexpr int vertices_per_contact = 12;
+
 /// Radii of the tools of a session [m].
 struct ToolRadii {
   double smallest, largest;

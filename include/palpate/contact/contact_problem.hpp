@@ -37,6 +37,11 @@ class ContactProblem {
   /// `maximum_tools` tools. Any TissueModel is a TissueView. Never allocates.
   Status solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
 
+  // The parts of `solve`, for tools that also touch other tissues: their targets may be moved between two `iterate`.
+  Status begin(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
+  Status iterate(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
+  Status end(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
+
   /// Continues on the surface of the same body after a cut, where vertices keep their numbers and there may be more.
   /// Forces, friction and grasps stay on the points that still exist, so that the next tick changes them only as much
   /// as the cut does. `fresh` was constructed for that surface with the same parameters; its workspaces are exchanged
@@ -93,8 +98,6 @@ class ContactProblem {
     double gap;
     detail::Candidate* candidate;
   };
-  /// Vertices that may carry force, per contact: those of the rows, and of the rows before where steps are cut short.
-  static constexpr int vertices_per_contact = 12;
   static constexpr int maximum_rounds = 12;            // solutions of the contact problem per tick
   static constexpr int added_per_round = 16;           // rows, those of deepest penetration
   static constexpr double unconverged_change = 0.05;   // relative change of force that is left and is flagged
@@ -130,14 +133,6 @@ class ContactProblem {
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
   inline std::array<bool, maximum_tools> are_near(Tools tools) const noexcept;
   void share_rows(Tools tools, const std::array<bool, maximum_tools>& is_near) noexcept;
-  /// The contacts of a tool on one body; their vertices are numbered in that body.
-  struct BodyContacts {
-    std::span<const Contact> rows;
-    Vector3 force = Vector3::Zero();
-    double scale = 0.0;  ///< force_scale [N]
-    double depth = 0.0;  ///< indentation [m]
-  };
-  BodyContacts contacts_on(const KnownErrors& body, bool only, std::size_t t, const ContactTool& tool) noexcept;
   double depth_of(double work, double scale, const Vector3& force, const ContactTool& tool) const noexcept;
   double error_of_points(std::size_t t) const noexcept;
   bool presses(std::size_t t, int row) const noexcept;
@@ -146,14 +141,13 @@ class ContactProblem {
   bool presses_coarse_facets(const ContactSurface& surface, std::size_t t, const ContactTool& tool,
                              bool measured) const noexcept;
   bool is_as_measured(const ContactSurface& surface) const noexcept;
+  const ForceAccuracy* accuracy_of(const TissueView& tissue) const noexcept;
   ForceError error_without_force(const TissueView& tissue, const ContactTool& tool) const noexcept;
-  void add_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts, std::size_t t,
-                  const ContactTool& tool, ForceError& error) const noexcept;
-  double error_of_sphere(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
-                         std::size_t t, const ContactTool& tool) const noexcept;
+  double error_of_sphere(const ContactSurface& surface, const ForceAccuracy& accuracy, std::size_t t,
+                         const ContactTool& tool) const noexcept;
   inline static double distance_from_support(const detail::LinearModelError& model, const Contact& c) noexcept;
-  void add_model_errors(const ContactSurface& surface, const KnownErrors& body, const BodyContacts& contacts,
-                        std::size_t t, detail::SphereIndentation sphere, ForceErrorParts& parts) const noexcept;
+  void add_model_errors(const ContactSurface& surface, std::size_t t, detail::SphereIndentation sphere, double scale,
+                        ForceErrorParts& parts) const noexcept;
   inline void note_pressing(detail::Candidate& c) noexcept;
   void predict_normals(int iteration) noexcept;
   void add_violated(const TissueView& tissue, Tools tools, int& built) noexcept;
@@ -174,12 +168,13 @@ class ContactProblem {
   detail::ProxyMotion proxies_;
   detail::PointLevels levels_;
   std::array<Grasp, maximum_tools> grasps_{};
-  std::vector<Contact> on_body_;  // workspace for a surface of several bodies
   int pressing_count_ = 0, violated_count_ = 0, rounds_left_ = 0;
   std::array<int, maximum_tools> pressing_of_{};  // per tool
   std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
   bool late_ = false;                             // a column of the compliance was missing in the last `solve`
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
+  std::array<bool, maximum_tools> is_near_{};     // tools with contact points near them
+  double rest_of_change_ = 0.0;                   // relative change of force that is left
   double feedback_ = 0.0, most_feedback_ = largest_feedback;
   double of_lifted_ = 0.0;       // forces of tools that are gone, which are still on the tissue [N]
   double most_of_lifted_ = 0.0;  // of them, since the tools have gone

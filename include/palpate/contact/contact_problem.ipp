@@ -22,8 +22,7 @@ PALPATE_INLINE ContactProblem::ContactProblem(const ContactSurface& surface, con
                   parameters_.subfacet_compliance ? surface.subfacet() : nullptr, parameters_.capacity),
       rows_(surface.vertex_count(), parameters_.friction, parameters_.capacity),
       pressing_(at(parameters_.capacity)),
-      violated_(at(candidates_.maximum())),
-      on_body_(surface.body_count() > 1 ? at(parameters_.capacity) : 0) {
+      violated_(at(candidates_.maximum())) {
   on_points_.reserve(at(parameters_.capacity));
   detail::require_dense_points(surface, radii.smallest);
 }
@@ -177,11 +176,15 @@ PALPATE_INLINE Status ContactProblem::update_candidates(const TissueView& tissue
 }
 
 PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
-  Status status;
+  Status status = begin(tissue, tools);
+  status |= iterate(tissue, tools);
+  return status | end(tissue, tools);
+}
+
+PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
   floor_ = tissue.compliance_floor();
-  rounds_left_ = maximum_rounds;
   late_ = false;
-  status |= tissue.require_columns({});  // before the revision is read
+  const Status status = tissue.require_columns({});  // before the revision is read
   note_forces_of_lifted(tools);
   set_outward(tissue.contact_surface(), tools);
   rows_.begin_tick(tissue.compliance_revision());
@@ -191,12 +194,19 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     displacement_.forget();
     start_.forget();
   }
-  auto is_near = are_near(tools);
-  share_rows(tools, is_near);
+  is_near_ = are_near(tools);
+  share_rows(tools, is_near_);
   set_levels(tools);
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
-  double change = 0.0, before = 0.0, rest = 0.0;
+  return status;
+}
+
+PALPATE_INLINE Status ContactProblem::iterate(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
+  Status status;
+  rounds_left_ = maximum_rounds;
+  double change = 0.0, before = 0.0;
+  rest_of_change_ = 0.0;
   for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
     if (rounds_left_ <= 0) {
       status.set(StatusFlag::solver_not_converged);
@@ -204,7 +214,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     }
     proxies_.begin(tools, floor_);
     status |= update_candidates(tissue, tools);
-    if (const auto now = are_near(tools); now != is_near) share_rows(tools, is_near = now);
+    if (const auto now = are_near(tools); now != is_near_) share_rows(tools, is_near_ = now);
     if (iteration == 0) {
       start_levels(tissue, tools);
       status |= grasp(tissue, tools);
@@ -216,23 +226,28 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
     proxies_.end(tools);
     change = proxies_.relative_change(tools, rows_.largest_force_scale(tools));
     const bool converged = has_converged(tools, iteration, before, change);
-    rest = converged ? change : rest_of_changes(iteration > 1 ? before : infinity, change, rest);
+    rest_of_change_ = converged ? change : rest_of_changes(iteration > 1 ? before : infinity, change, rest_of_change_);
     limit_feedback(converged, iteration > 0 && change > before);
     if (converged) break;
     before = change;
   }
+  return status;
+}
+
+PALPATE_INLINE Status ContactProblem::end(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
+  Status status;
   rows_.stick(tools);
   std::array<int, maximum_tools> grasped{};
   for (std::size_t t = 0; t < maximum_tools; ++t) grasped[t] = static_cast<int>(grasps_[t].rows().size());
   levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped,
                    vertices_of_print(tissue.contact_surface()));
   if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
-  if (rest > unconverged_change || !rows_.has_converged() ||
+  if (rest_of_change_ > unconverged_change || !rows_.has_converged() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   bool presses = rows_.deepest_push() > 0.0;
   for (const Grasp& g : grasps_) presses = presses || g.holds_any();
-  if (proxies_.end_tick(tools, rest <= unconverged_change, presses, rows_.largest_force_scale(tools)))
+  if (proxies_.end_tick(tools, rest_of_change_ <= unconverged_change, presses, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
   return status;
 }
@@ -356,30 +371,6 @@ PALPATE_INLINE double ContactProblem::force_from_behind(const TissueView& tissue
   return all > 0.0 ? behind / all : 0.0;
 }
 
-/// The contacts themselves where there is one body only.
-PALPATE_INLINE ContactProblem::BodyContacts ContactProblem::contacts_on(const KnownErrors& body, bool only,
-                                                                        std::size_t t,
-                                                                        const ContactTool& tool) noexcept {
-  const int number = static_cast<int>(t);
-  if (only) return {rows_.contacts(), tool.force, scale_of_force(t, tool.force.norm()), indentation(t, tool)};
-  BodyContacts own;
-  std::size_t count = 0;
-  double sum = 0.0, work = 0.0;
-  for (int i = 0; i < rows_.count(); ++i) {
-    Contact c = rows_.contacts()[at(i)];
-    if (c.tool != number || c.vertices[0] < body.first || c.vertices[0] >= body.end) continue;
-    own.force += c.total();
-    sum += std::abs(c.force);
-    work += rows_.push_work_of_row(i);
-    for (int& v : c.vertices) v -= body.first;
-    on_body_[count++] = c;
-  }
-  own.rows = {on_body_.data(), count};
-  own.scale = detail::force_scale(own.force.norm(), sum);
-  own.depth = depth_of(work, own.scale, own.force, tool);
-  return own;
-}
-
 /// Distance of a contact point from the nearest constrained node, interpolated from its vertices [m].
 inline double ContactProblem::distance_from_support(const detail::LinearModelError& model, const Contact& c) noexcept {
   double distance = 0.0;
@@ -389,19 +380,18 @@ inline double ContactProblem::distance_from_support(const detail::LinearModelErr
 
 /// The strain follows from the force on a fine mesh. Where columns, rows or points are missing the force may be too
 /// small: all of the depth then counts as indentation.
-PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, const KnownErrors& body,
-                                                     const BodyContacts& contacts, std::size_t t,
-                                                     detail::SphereIndentation sphere,
+PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surface, std::size_t t,
+                                                     detail::SphereIndentation sphere, double scale,
                                                      ForceErrorParts& parts) const noexcept {
-  const detail::LinearModelError& model = *body.model;
+  const detail::LinearModelError& model = surface.model_error();
   if (!(sphere.depth > 0.0 && model.body_size > 0.0)) return;
   const bool is_sparse = has_fewer_points(t) && error_of_points(t) > flagged_error;
   if (late_ || missing_depth() > 0.0 || is_sparse) sphere.force = infinity;
   double sum = 0.0;
-  for (const Contact& c : contacts.rows) {
+  for (const Contact& c : rows_.contacts()) {
     if (c.tool != static_cast<int>(t) || c.force == 0.0) continue;
     if (sum == 0.0) {
-      const ContactMaterial material = surface.material(surface.triangles_at(body.first + c.vertices[0]).front());
+      const ContactMaterial material = surface.material(surface.triangles_at(c.vertices[0]).front());
       if (material.modulus > 0.0) {
         sphere.modulus = material.modulus;
         sphere.poisson_ratio = material.poisson_ratio;
@@ -415,7 +405,7 @@ PALPATE_INLINE void ContactProblem::add_model_errors(const ContactSurface& surfa
   parts.storage += model.storage * sum * sum / sphere.depth;
   parts.conditioning += model.conditioning * sum * sum / sphere.depth;
   sphere.depth += levels_.deepest();  // points without rows sink in
-  parts.linearity += contacts.scale * detail::linearity_error(sphere, model.body_size);
+  parts.linearity += scale * detail::linearity_error(sphere, model.body_size);
 }
 
 /// Whether the force is more than a tenth too large because a thin body has too few elements across it to bend. Their
@@ -507,38 +497,19 @@ PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexc
 
 /// For tools of other shapes nothing is measured. Where the error of a sphere of the same radius, pressed as deep, is
 /// large, theirs is: its force there is that on a half-space. Relative to the force; infinite if not known.
-PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const KnownErrors& body,
-                                                      const BodyContacts& contacts, std::size_t t,
-                                                      const ContactTool& tool) const noexcept {
-  const auto own = std::ranges::find(contacts.rows, static_cast<int>(t), &Contact::tool);
-  if (body.accuracy == nullptr || own == contacts.rows.end()) return infinity;
-  const int vertex = body.first + own->vertices[0];
-  const double modulus = surface.material(surface.triangles_at(vertex).front()).modulus;
-  const double depth = std::min(contacts.depth, tool.radius),
+PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const ForceAccuracy& accuracy,
+                                                      std::size_t t, const ContactTool& tool) const noexcept {
+  const auto rows = rows_.contacts();
+  const auto own = std::ranges::find(rows, static_cast<int>(t), &Contact::tool);
+  if (own == rows.end()) return infinity;
+  const double modulus = surface.material(surface.triangles_at(own->vertices[0]).front()).modulus;
+  const double depth = std::min(indentation(t, tool), tool.radius),
                force = 4.0 / 3.0 * modulus * std::sqrt(tool.radius * depth) * depth;
   ContactTool sphere = tool;
   sphere.half_length = 0.0;
   sphere.force = Vector3(0.0, 0.0, force);
-  const double bound = body.accuracy->error(sphere, static_cast<int>(t), contacts.rows, depth).bound;
+  const double bound = accuracy.error(sphere, static_cast<int>(t), rows, depth).bound;
   return bound > 0.0 ? bound / force : 0.0;
-}
-
-/// The bounds add up. The expected error counts as far as it is along the force of the tool.
-PALPATE_INLINE void ContactProblem::add_errors(const ContactSurface& surface, const KnownErrors& body,
-                                               const BodyContacts& contacts, std::size_t t, const ContactTool& tool,
-                                               ForceError& error) const noexcept {
-  ForceError own;
-  if (body.accuracy != nullptr) {
-    ContactTool pressing = tool;
-    if (const double force = contacts.force.norm(); force > 0.0)
-      pressing.force = contacts.scale > force ? contacts.scale / force * contacts.force : contacts.force;
-    own = body.accuracy->error(pressing, static_cast<int>(t), contacts.rows, contacts.depth);
-  }
-  error.expected += own.expected * contacts.force.dot(tool.force) / (contacts.scale * error.force);
-  error.parts.mesh += own.bound;
-  if (body.model != nullptr)
-    add_model_errors(surface, body, contacts, t, {contacts.scale - own.expected, contacts.depth, tool.radius},
-                     error.parts);
 }
 
 /// Whether points have the compliance with which errors are measured at set-up.
@@ -558,51 +529,53 @@ PALPATE_INLINE bool ContactProblem::presses_beside_pad(std::size_t t) const noex
   return beside > most * all;
 }
 
+/// The errors that were measured on a surface, where they are those of the tissue's contact; else null.
+PALPATE_INLINE const ForceAccuracy* ContactProblem::accuracy_of(const TissueView& tissue) const noexcept {
+  const ContactSurface& surface = tissue.contact_surface();
+  return tissue.has_contact_materials() && is_as_measured(surface) ? surface.force_accuracy() : nullptr;
+}
+
 /// A sphere without force may have entered a facet between contact points.
 PALPATE_INLINE ForceError ContactProblem::error_without_force(const TissueView& tissue,
                                                               const ContactTool& tool) const noexcept {
   const ForceError unknown{0.0, infinity, 0.0}, none{0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
-  bool any = false;
-  for (int b = 0; b < surface.body_count(); ++b) any = any || surface.known_errors(b).accuracy != nullptr;
-  if (!any || !tissue.has_contact_materials() || !is_as_measured(surface)) return unknown;
+  const ForceAccuracy* const accuracy = accuracy_of(tissue);
+  if (accuracy == nullptr) return unknown;
   const auto closest = surface.closest(tool.proxy);
-  if (!(closest.distance < tool.radius)) return none;
-  const int vertex = surface.triangle(closest.triangle)[0];
-  for (int b = 0; b < surface.body_count(); ++b)
-    if (const KnownErrors body = surface.known_errors(b); vertex >= body.first && vertex < body.end)
-      return body.accuracy != nullptr ? body.accuracy->error_without_force(vertex - body.first) : unknown;
-  return unknown;
+  return closest.distance < tool.radius ? accuracy->error_without_force(surface.triangle(closest.triangle)[0]) : none;
 }
 
+/// The bounds add up. The expected error counts as far as it is along the force of the tool.
 PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, std::size_t t,
                                                       const ContactTool& tool) noexcept {
   coarse_[t] = false;
   if (!tool.active || !candidates_.has_any(static_cast<int>(t))) return {0.0, 0.0, 0.0, {0.0}};
   const ContactSurface& surface = tissue.contact_surface();
-  const double force = tool.force.norm();
+  const double force = tool.force.norm(), scale = scale_of_force(t, force);
   if (!(force > 0.0)) return error_without_force(tissue, tool);
-  ForceError error{0.0, 0.0, force, {0.0}};
-  bool pressed = false, measured = true;
-  for (int b = 0; b < surface.body_count(); ++b) {
-    KnownErrors body = surface.known_errors(b);
-    if (!tissue.has_contact_materials() || !is_as_measured(surface)) body = {body.first, body.end};
-    const BodyContacts contacts = contacts_on(body, surface.body_count() == 1, t, tool);
-    if (!(contacts.scale > 0.0)) continue;
-    pressed = true;
-    add_errors(surface, body, contacts, t, tool, error);
-    if (tool.half_length == 0.0) continue;
-    const double coarse = error_of_sphere(surface, body, contacts, t, tool);
-    measured = measured && coarse < infinity;
-    coarse_[t] = coarse_[t] || (coarse > flagged_error && coarse < infinity);
+  ForceError error{0.0, 0.0, force, {0.0}}, own;
+  const ForceAccuracy* const accuracy = accuracy_of(tissue);
+  const double depth = indentation(t, tool);
+  if (accuracy != nullptr) {
+    ContactTool pressing = tool;
+    if (scale > force) pressing.force = scale / force * tool.force;
+    own = accuracy->error(pressing, static_cast<int>(t), rows_.contacts(), depth);
   }
-  if (presses_beside_pad(t)) error.parts.mesh = infinity;
-  if (tool.half_length == 0.0) measured = error.parts.mesh < infinity;
+  error.expected = own.expected * tool.force.squaredNorm() / (scale * force);
+  error.parts.mesh = presses_beside_pad(t) ? infinity : own.bound;
+  if (tissue.has_contact_materials() && is_as_measured(surface))
+    add_model_errors(surface, t, {scale - own.expected, depth, tool.radius}, scale, error.parts);
+  bool measured = error.parts.mesh < infinity;
+  if (tool.half_length > 0.0) {
+    const double coarse = accuracy != nullptr ? error_of_sphere(surface, *accuracy, t, tool) : infinity;
+    measured = coarse < infinity;
+    coarse_[t] = measured && coarse > flagged_error;
+  }
   coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured) ||
                (!measured && bends_coarse_elements(surface, t, tool));
-  if (!pressed) error.parts.mesh = infinity;
   error.parts.late = late_ ? infinity : 0.0;
-  error.parts.merged = scale_of_force(t, force) * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));
+  error.parts.merged = scale * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));
   error.bound = error.parts.sum();
   return error;
 }

@@ -48,14 +48,6 @@ struct ContactMaterial {
   double poisson_ratio = 0.0;  ///< nu
 };
 
-/// What is known about the errors of forces on one body of a surface, whose vertices are those from `first` to before
-/// `end`. Null: nothing is known. Refers to the body's surface.
-struct KnownErrors {
-  int first = 0, end = 0;
-  const ForceAccuracy* accuracy = nullptr;
-  const detail::LinearModelError* model = nullptr;
-};
-
 /// Vertices and outward triangles of the touchable surface, at rest under its loads and without tools.
 class ContactSurface {
  public:
@@ -110,12 +102,8 @@ class ContactSurface {
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   /// Sets what is known about the other errors of a linear model.
   void set_model_error(detail::LinearModelError error) noexcept { model_error_ = std::move(error); }
-  /// Sets both for a surface that joins those of several bodies, whose vertices follow each other. Allocates when there
-  /// are more bodies than before; for set-up.
-  void set_known_errors(std::span<const KnownErrors> bodies) { bodies_.assign(bodies.begin(), bodies.end()); }
-  /// Number of bodies whose errors are known separately; at least one.
-  int body_count() const noexcept { return bodies_.empty() ? 1 : static_cast<int>(bodies_.size()); }
-  KnownErrors known_errors(int body = 0) const noexcept;
+  const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
+  const detail::LinearModelError& model_error() const noexcept { return model_error_; }
   /// sqrt(2 area): of half a square, the side of that square [m].
   double facet_length(int t) const noexcept;
   /// The square of twice the area of a facet: the fourth power of facet_length, without roots [m^4].
@@ -206,7 +194,6 @@ class ContactSurface {
   std::shared_ptr<const SubfacetCompliance> subfacet_;
   std::shared_ptr<const ForceAccuracy> accuracy_;
   detail::LinearModelError model_error_;
-  std::vector<KnownErrors> bodies_;            // of joined surfaces; empty for one of its own
   std::vector<std::array<int, 3>> neighbour_;  // across edges 01, 12, 20, or one of these:
   static constexpr int no_neighbour = -1, several_neighbours = -2;
 };

@@ -214,11 +214,6 @@ PALPATE_INLINE void ContactSurface::add_shell(std::span<const Vector3> positions
   body_.emplace_back(std::move(all), std::move(closed));
 }
 
-PALPATE_INLINE KnownErrors ContactSurface::known_errors(int body) const noexcept {
-  return bodies_.empty() ? KnownErrors{0, vertex_count(), accuracy_.get(), &model_error_}
-                         : bodies_[static_cast<std::size_t>(body)];
-}
-
 PALPATE_INLINE double ContactSurface::facet_length(int t) const noexcept {
   return std::sqrt(std::sqrt(double_area_squared(t)));
 }

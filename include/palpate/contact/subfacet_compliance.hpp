@@ -40,12 +40,6 @@ class SubfacetCompliance {
   }
 
   explicit SubfacetCompliance(const detail::ProjectedHalfSpace& table);
-  /// Of a surface that joins those of several bodies, whose vertices follow each other; null: nothing is known.
-  struct Body {
-    const SubfacetCompliance* own;
-    int vertices;
-  };
-  explicit SubfacetCompliance(std::span<const Body> bodies);
   /// A vertex of a surface after cuts.
   struct Copy {
     int origin;       ///< vertex of the surface before; -1: not known

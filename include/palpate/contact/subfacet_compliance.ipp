@@ -26,27 +26,6 @@ PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const detail::ProjectedHal
   index_blocks();
 }
 
-PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(std::span<const Body> bodies) {
-  first_.assign(1, 0);
-  int number = 0;
-  for (const Body& body : bodies) {
-    const int before = vertex_count();
-    int last = number;  // a body may be a group itself
-    for (int v = 0; v < body.vertices; ++v) {
-      detail::HalfSpacePoint& p =
-          vertices_.emplace_back(body.own != nullptr ? body.own->vertex(v) : detail::HalfSpacePoint{});
-      p.body += number;
-      last = std::max(last, p.body);
-      for (const Block& block : body.own != nullptr ? body.own->blocks(v) : std::span<const Block>{})
-        blocks_.push_back({block.vertex + before, block.shown});
-      first_.push_back(static_cast<int>(blocks_.size()));
-    }
-    has_copies_ = has_copies_ || (body.own != nullptr && body.own->has_copies_);
-    number = last + 1;
-  }
-  index_blocks();
-}
-
 PALPATE_INLINE SubfacetCompliance::SubfacetCompliance(const SubfacetCompliance& whole, std::span<const Copy> vertices) {
   std::vector<std::vector<int>> copies(whole.vertices_.size());
   for (std::size_t v = 0; v < vertices.size(); ++v)
@@ -125,7 +104,7 @@ PALPATE_INLINE detail::HalfSpacePoint SubfacetCompliance::point(const detail::Co
 
 PALPATE_INLINE Matrix3 SubfacetCompliance::half_space(const detail::HalfSpacePoint& p,
                                                       const detail::HalfSpacePoint& q) noexcept {
-  return p.is_known() && q.is_known() && p.body == q.body ? detail::supported_compliance(p, q) : Matrix3::Zero();
+  return p.is_known() && q.is_known() ? detail::supported_compliance(p, q) : Matrix3::Zero();
 }
 
 PALPATE_INLINE Matrix3 SubfacetCompliance::shown(const detail::ContactSample& p,

@@ -166,6 +166,7 @@ class TissueView {
     look();
   }
 
+  bool is_same(const TissueView& other) const noexcept { return tissue_ == other.tissue_; }
   /// Updates the pointer to the surface.
   void look() noexcept { surface_ = &functions_->contact_surface(tissue_); }
   const ContactSurface& contact_surface() const noexcept { return *surface_; }

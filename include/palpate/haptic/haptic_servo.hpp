@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/tissue_group.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/core/status.hpp>
@@ -19,39 +20,38 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-class ContactProblem;
-
 namespace detail {
 
 struct Hand;
-class ForceErrorMeasurement;
-class ServoBlade;
-class ToolInput;
+class TouchedTissue;
 
 }  // namespace detail
 
 /// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
-/// pose and passes it through the gate; no other path leads to the device. Refers to the tissue, which must outlive it;
-/// neither copied nor moved. An EnergyTank given as last argument is used in place of those of
-/// ServoOptions::limit_energy, for other EnergyLimits. One class for tissues of all types: it refers to its tissue
-/// through TissueView. With a HapticDevice, HapticSession is simpler.
+/// pose and passes it through the gate; no other path leads to the device. A TissueGroup in place of a tissue: the
+/// force is that of all its tissues together, and status flags are those of the tissues that a tool touches. Refers to
+/// the tissues, which must outlive it; neither copied nor moved. An EnergyTank given as last argument is used in place
+/// of those of ServoOptions::limit_energy, for other EnergyLimits. One class for tissues of all types: it refers to its
+/// tissue through TissueView. With a HapticDevice, HapticSession is simpler.
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
   using Snapshot = ServoSnapshot;
   using Energy = std::optional<EnergyTank>;
 
-  /// Throws bad_argument for an invalid tool, coupling or limits, or when the tissue has no touchable surface;
-  /// unsupported (ids: the tool) for a BladeTool and a tissue that cannot be cut, and for a tissue that moves or is cut
-  /// while another servo uses it; suspicious_units (ids: the tool) for a tool of more than a metre, if the tissue
-  /// refuses such (AdmissionPolicy::units): otherwise it is noted.
-  /// Allocates everything that a tick needs.
+  /// Throws bad_argument for an invalid tool, coupling or limits, a group without tissues or with one twice, or when a
+  /// tissue has no touchable surface; unsupported (ids: the tool) for a BladeTool and no tissue that can be cut, and
+  /// for a tissue that moves or is cut while another servo uses it; suspicious_units (ids: the tool) for a tool of more
+  /// than a metre, if the tissue refuses such (AdmissionPolicy::units): otherwise it is noted. Allocates everything
+  /// that a tick needs.
   template <class T>
-  requires(!std::same_as<std::remove_cv_t<T>, TissueView>)
+  requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
       HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
-      : HapticServo(TissueView(tissue), tools, options, energy) {}
+      : HapticServo(TissueGroup(tissue), tools, options, energy) {}
+  HapticServo(const TissueGroup& tissues, const ToolList& tools, const ServoOptions& options = {},
+              const Energy& energy = {});
   template <class T>
-  requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>)
+  requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueGroup>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
   ~HapticServo();
@@ -75,15 +75,15 @@ class HapticServo {
   void reset() noexcept;
   /// Reports to the tissue that nothing presses any more, after the last tick; contacts and snapshot stay. For the
   /// tick's own thread.
-  void release() noexcept { tissue_.end_tick({}, {}); }
+  void release() noexcept;
 
   /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
   /// thread.
   TickView tick_view() const& noexcept;
   TickView tick_view() const&& = delete;
 
-  /// The facets that are too long for the smallest tool, on the surface at construction.
-  const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }
+  /// The facets of a tissue that are too long for the smallest tool, on the surface at construction.
+  const CoarseFacetReport& coarse_facets(std::size_t tissue = 0) const noexcept;
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// Limits of a tool's gate.
@@ -97,34 +97,23 @@ class HapticServo {
 
  private:
   friend class HapticSession;
-  friend class detail::ForceErrorMeasurement;
-  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options, const Energy& energy);
-
   void check_units();
-  std::unique_ptr<detail::ServoBlade> make_blade(const BladeTool& blade, std::size_t tool,
-                                                 const ServoOptions& options) const;
+  void check_blades() const;
   detail::Hand make_hand(std::size_t i, const ServoOptions& options, const Energy& energy);
-  void note_updates() noexcept;
-  void receive(detail::Hand& hand, const ToolState& state) noexcept;
-  void receive_blade(detail::ServoBlade& blade, detail::ToolInput& input, const ToolState& state) noexcept;
-  double estimate_error(detail::Hand& hand) noexcept;
-  void pass(detail::Hand& hand, Status shared) noexcept;
-  Status status_of(detail::Hand& hand) noexcept;
+  void receive(std::span<const ToolState> states) noexcept;
+  void solve() noexcept;
+  void recover() noexcept;
+  void add_errors(detail::Hand& hand, const Vector3& force) noexcept;
+  void pass(detail::Hand& hand) noexcept;
   void publish() noexcept;
 
-  TissueView tissue_;
-  detail::ClaimedTissue claimed_;
-  std::vector<std::string> notes_;
   ToolList tools_;  // owns the shapes of convex tools
-  std::vector<ContactTool> contact_tools_;
-  std::unique_ptr<ContactProblem> problem_;  // behind a pointer: its headers take long to compile
-  CoarseFacetReport coarse_facets_;
+  std::vector<detail::TouchedTissue> tissues_;
+  std::vector<std::string> notes_;
   std::vector<GatedForce> forces_;
-  std::vector<detail::Hand> hands_;  // refer to contact tools and forces
-  double stale_tissue_after_;
+  std::vector<detail::Hand> hands_;  // refer to forces
+  double stale_tissue_after_, force_tolerance_;
   bool corrected_force_;
-  std::uint64_t updates_ = 0;
-  bool started_ = false;
   TripleBuffer<Snapshot> snapshots_;
   const Snapshot* newest_ = &snapshots_.back();  // published last; not written before the next is published
 };

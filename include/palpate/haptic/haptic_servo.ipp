@@ -1,12 +1,13 @@
 // Definitions of haptic_servo.hpp.
 #pragma once
 
-#include <palpate/contact/contact_problem.hpp>
 #include <palpate/core/platform.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/detail/hand.hpp>
+#include <palpate/haptic/detail/shared_tools.hpp>
 #include <palpate/haptic/detail/tool_recovery.hpp>
+#include <palpate/haptic/detail/touched_tissue.hpp>
 #include <palpate/haptic/haptic_servo.hpp>
 
 #include <algorithm>
@@ -17,61 +18,54 @@ namespace detail {
 
 static_assert(Servo<HapticServo>);
 
-inline ToolRadii radii_of(const std::vector<ContactTool>& tools) noexcept {
-  ToolRadii radii(no_sphere, 0.0);
-  for (const ContactTool& tool : tools) {
-    radii.smallest = std::min(radii.smallest, tool.radius);
-    if (!(tool.radius < no_sphere)) continue;
-    radii.largest = std::max(radii.largest, tool.radius);
-    radii.largest_scale = std::max(radii.largest_scale, tool.point_scale());
-  }
-  return radii;
-}
-/// The compliance of points finer than facets needs materials that belong to the tissue's compliance.
-inline ContactParameters contact_parameters(const TissueView& tissue, ContactParameters parameters) noexcept {
-  parameters.subfacet_compliance = parameters.subfacet_compliance && tissue.has_contact_materials();
-  return parameters;
-}
-/// A contact problem on the surface of a tissue, which is prepared for it. Also where all tools are blades: tissue that
-/// is cut then makes contact problems like this one, with room for the vertices that a cut adds.
-inline std::unique_ptr<ContactProblem> prepared_problem(TissueView& tissue, const std::vector<ContactTool>& tools,
-                                                        const ContactParameters& contact) {
-  const ContactParameters parameters =
-      contact_parameters(tissue, contact.for_tools(tools.size(), tissue.contact_surface().has_large_strain()));
-  tissue.prepare_tools(radii_of(tools), parameters);
-  return std::make_unique<ContactProblem>(tissue.contact_surface(), radii_of(tools), parameters);
-}
 inline ToolState unreadable() noexcept {
   ToolState s;
   s.valid = false;
   return s;
 }
 
+/// The tissues of a servo, with their notes.
+inline std::vector<TouchedTissue> touched_tissues(std::span<const GroupMember> members, const ToolList& tools,
+                                                  const ServoOptions& options) {
+  if (members.empty()) raise(SetupErrorKind::bad_argument, "a TissueGroup has no tissues");
+  for (std::size_t k = 1; k < members.size(); ++k)
+    for (std::size_t other = 0; other < k; ++other)
+      if (members[k].tissue.is_same(members[other].tissue))
+        raise(SetupErrorKind::bad_argument,
+              "tissues " + std::to_string(other) + " and " + std::to_string(k) + " of a TissueGroup are one");
+  std::vector<TouchedTissue> made;
+  made.reserve(members.size());
+  for (const GroupMember& member : members) made.emplace_back(member, tools, options);
+  return made;
+}
+inline std::vector<std::string> notes_of(std::span<const GroupMember> members) {
+  std::vector<std::string> all;
+  for (const GroupMember& member : members)
+    for (std::string& note : member.tissue.notes()) all.push_back(std::move(note));
+  return all;
+}
+
 }  // namespace detail
 
-PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options,
+PALPATE_INLINE HapticServo::HapticServo(const TissueGroup& tissues, const ToolList& tools, const ServoOptions& options,
                                         const Energy& energy)
-    : tissue_(tissue),
-      claimed_(tissue_.claim()),
-      notes_(tissue_.notes()),
-      tools_(tools),
-      contact_tools_(detail::make_contact_tools(tools_, options)),
-      problem_(detail::prepared_problem(tissue_, contact_tools_, options.contact)),
-      coarse_facets_(
-          detail::report_coarse_facets(tissue_.contact_surface(), detail::radii_of(contact_tools_).smallest)),
+    : tools_(tools),
+      tissues_(detail::touched_tissues(tissues.members(), tools_, options)),
+      notes_(detail::notes_of(tissues.members())),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
+      force_tolerance_(options.contact.force_tolerance),
       corrected_force_(options.corrected_force) {
-  if (tissue_.contact_surface().triangles().empty())
-    raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
-          "Name a surface group with Scene::touch");
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
           "It must be positive, in seconds; infinity is allowed");
   check_units();
+  check_blades();
   hands_.reserve(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) hands_.push_back(make_hand(i, options, energy));
-  Snapshot empty(problem_->capacity());
+  int capacity = 0;
+  for (const detail::TouchedTissue& tissue : tissues_) capacity += tissue.problem().capacity();
+  Snapshot empty(capacity, tissues_.size());
   empty.tool_count = tools.size();
   snapshots_.fill(empty);
 }
@@ -79,10 +73,13 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueView& tissue, const ToolList
 PALPATE_INLINE HapticServo::~HapticServo() = default;
 
 PALPATE_INLINE TickView HapticServo::tick_view() const& noexcept {
-  return {tissue_, *problem_, hands_.data(), newest_};
+  return {tissues_, hands_.data(), newest_};
 }
 PALPATE_INLINE const ForceLimits& HapticServo::limits(std::size_t tool) const noexcept {
   return hands_[tool].gate.limits();
+}
+PALPATE_INLINE const CoarseFacetReport& HapticServo::coarse_facets(std::size_t tissue) const noexcept {
+  return tissues_[tissue].coarse_facets();
 }
 
 /// Notes or refuses tools that are larger than a metre.
@@ -90,8 +87,8 @@ PALPATE_INLINE void HapticServo::check_units() {
   constexpr double largest = 1.0;  // [m]
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const auto* const blade = std::get_if<BladeTool>(&tools_[i]);
-    const double size =
-        blade != nullptr ? blade->edge.norm() : contact_tools_[i].radius + contact_tools_[i].half_length;
+    const ContactTool& tool = tissues_.front().touch(i).tool;
+    const double size = blade != nullptr ? blade->edge.norm() : tool.radius + tool.half_length;
     if (!(size > largest)) continue;
     SetupProblem problem;
     problem.kind = SetupErrorKind::suspicious_units;
@@ -101,34 +98,30 @@ PALPATE_INLINE void HapticServo::check_units() {
     problem.threshold = largest;
     const auto id = static_cast<std::int64_t>(i);
     problem.set_ids({&id, 1});
-    if (tissue_.refuses_suspicious_units()) raise(std::move(problem));
+    for (const detail::TouchedTissue& tissue : tissues_)
+      if (tissue.view().refuses_suspicious_units()) raise(std::move(problem));
     notes_.push_back(std::move(problem.what));
   }
 }
 
-/// Throws unsupported for tissue that cannot be cut.
-PALPATE_INLINE std::unique_ptr<detail::ServoBlade> HapticServo::make_blade(const BladeTool& blade, std::size_t tool,
-                                                                           const ServoOptions& options) const {
-  if (!tissue_.can_be_cut()) {
+/// Throws unsupported for a blade and no tissue that can be cut.
+PALPATE_INLINE void HapticServo::check_blades() const {
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (std::get_if<BladeTool>(&tools_[i]) == nullptr ||
+        std::ranges::any_of(tissues_, [](const auto& tissue) { return tissue.view().can_be_cut(); }))
+      continue;
     SetupProblem problem;
     problem.kind = SetupErrorKind::unsupported;
     problem.what = "this tissue cannot be cut: it has no try_cut(BladeSweep)";
     problem.hint = "Use a CuttableTissue, or touch it with a SphereTool or CapsuleTool";
-    const auto id = static_cast<std::int64_t>(tool);
+    const auto id = static_cast<std::int64_t>(i);
     problem.set_ids({&id, 1});
     raise(std::move(problem));
   }
-  return tissue_.make_blade(blade, detail::coupling_stiffness_of(tool, options));
 }
 
 PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOptions& options, const Energy& energy) {
-  std::unique_ptr<detail::ServoBlade> blade;
-  if (const auto* const tool = std::get_if<BladeTool>(&tools_[i])) blade = make_blade(*tool, i, options);
-  const ForceLimits limits = options.limits(i);
-  const bool rotates = !blade && (contact_tools_[i].half_length > 0.0 || limits.peak_torque > 0.0);
-  detail::Hand hand{i, contact_tools_[i], forces_[i],
-                    detail::ToolInput(static_cast<int>(i), rotates, options.grasp_buttons), ForceGate(limits)};
-  hand.blade = std::move(blade);
+  detail::Hand hand{i, forces_[i], ForceGate(options.limits(i))};
   hand.tank = energy;
   if (!energy && options.limit_energy) hand.tank.emplace(EnergyLimits::from(options.device_of(i)));
   return hand;
@@ -136,124 +129,150 @@ PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOpt
 
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
-  Status shared = tissue_.begin_tick(*problem_);
-  for (detail::Hand& hand : hands_)
-    receive(hand, hand.number < states.size() ? states[hand.number] : detail::unreadable());
-  note_updates();
-  shared |= problem_->solve(tissue_, contact_tools_);
-  const detail::ToolRecovery recovery(tissue_, *problem_);
-  if (recovery.sweep_lost_tools(hands_)) shared |= problem_->solve(tissue_, contact_tools_);
-  if (recovery.place_lost_tools(hands_)) shared |= problem_->solve(tissue_, contact_tools_);
-  for (detail::Hand& hand : hands_) recovery.recover(hand);
-  for (detail::Hand& hand : hands_) pass(hand, shared);
-  if (tissue_.takes_forces()) tissue_.end_tick(problem_->vertex_forces(), problem_->point_forces());
+  for (detail::TouchedTissue& tissue : tissues_) tissue.take_news();
+  receive(states);
+  for (detail::TouchedTissue& tissue : tissues_) tissue.note_updates();
+  solve();
+  recover();
+  for (detail::Hand& hand : hands_) pass(hand);
+  for (detail::TouchedTissue& tissue : tissues_) tissue.give_forces();
   publish();
   return forces_;
 }
 
 PALPATE_INLINE void HapticServo::reset() noexcept {
-  problem_->reset();
-  started_ = false;
-  updates_ = 0;
+  for (detail::TouchedTissue& tissue : tissues_) tissue.reset();
   for (detail::Hand& hand : hands_) hand.reset();
-  tissue_.end_tick({}, {});
   publish();
 }
 
-/// Notes when a tissue that moves by itself was last updated.
-PALPATE_INLINE void HapticServo::note_updates() noexcept {
-  if (!tissue_.has_updates()) return;
-  const std::uint64_t updates = tissue_.updates();
-  const bool has_news = !started_ || updates != updates_;
-  updates_ = updates;
-  started_ = true;
-  for (detail::Hand& hand : hands_) hand.input.note_tissue(has_news);
+PALPATE_INLINE void HapticServo::release() noexcept {
+  for (detail::TouchedTissue& tissue : tissues_) tissue.release();
 }
 
-PALPATE_INLINE void HapticServo::receive(detail::Hand& hand, const ToolState& state) noexcept {
-  if (hand.blade) return receive_blade(*hand.blade, hand.input, state);
-  hand.input.receive(state, tissue_.to_world(), tissue_.contact_surface(), problem_->contacts(), hand.tool);
-  if (hand.tank) hand.tank->rotated(hand.gate.last_torque().dot(hand.input.rotation()));
+PALPATE_INLINE void HapticServo::receive(std::span<const ToolState> states) noexcept {
+  if (tissues_.size() > 1) detail::SharedTools::begin_tick(tissues_);
+  for (detail::Hand& hand : hands_) {
+    const std::size_t i = hand.number;
+    const ToolState state = i < states.size() ? states[i] : detail::unreadable();
+    if (tissues_.size() == 1) {
+      tissues_.front().receive(i, state);
+    } else {
+      for (detail::TouchedTissue& tissue : tissues_)
+        tissue.receive(i, detail::SharedTools::moved(state, tissue.touch(i)));
+    }
+    const detail::Touch& touch = tissues_.front().touch(i);
+    if (hand.tank && !touch.is_blade)
+      hand.tank->rotated(hand.gate.last_torque().dot(touch.input.rotation() - touch.rotation_change));
+  }
 }
 
-/// A blade restarts if it moved farther in a tick than the length of its edge.
-PALPATE_INLINE void HapticServo::receive_blade(detail::ServoBlade& blade, detail::ToolInput& input,
-                                               const ToolState& state) noexcept {
-  input.receive_freely(state, tissue_.to_world(), blade.cut().tool().edge.norm());
-  if (input.readable())
-    blade.follow(tissue_.to_world() * input.position(), input.restarted(), tissue_);
-  else
-    blade.lift();
+PALPATE_INLINE void HapticServo::solve() noexcept {
+  if (tissues_.size() == 1) return tissues_.front().solve();
+  detail::SharedTools::solve(tissues_, force_tolerance_);
 }
 
-/// Updates the error of a tool's force; returns the factor of the force. The expected error is subtracted as far as its
-/// bound is small: where the tissue deforms otherwise than it was measured (a pinch of a part that a single sphere
-/// bends) the bound is as large as the force, and the expected error wrong. The bound stays: it was measured for the
-/// force without correction, and the expected error may be too large.
-PALPATE_INLINE double HapticServo::estimate_error(detail::Hand& hand) noexcept {
-  ForceError& error = hand.error;
-  error = hand.blade ? ForceError{0.0, infinity, hand.blade->force().norm()}
-                     : problem_->force_error(tissue_, hand.number, hand.tool);
-  constexpr double whole = 0.2, none = 0.4;  // bounds, relative to the force
-  if (!corrected_force_ || error.expected == 0.0 || hand.tool.grasping) return 1.0;
-  const double trusted = std::clamp((none - error.relative()) / (none - whole), 0.0, 1.0);
-  const double factor = 1.0 - trusted * error.expected / error.force;
-  error.expected *= 1.0 - trusted;
-  error.force *= factor;
-  return factor;
+/// Puts tools that have lost a surface back on it.
+PALPATE_INLINE void HapticServo::recover() noexcept {
+  const auto any = [this](auto recovers) {
+    bool is_any = false;
+    for (detail::TouchedTissue& tissue : tissues_)
+      is_any = recovers(detail::ToolRecovery(tissue.view(), tissue.problem()), tissue.touches()) || is_any;
+    return is_any;
+  };
+  if (any([](const auto& recovery, auto touches) { return recovery.sweep_lost_tools(touches); })) solve();
+  if (any([](const auto& recovery, auto touches) { return recovery.place_lost_tools(touches); })) solve();
+  for (detail::TouchedTissue& tissue : tissues_)
+    for (detail::Touch& touch : tissue.touches()) detail::ToolRecovery(tissue.view(), tissue.problem()).recover(touch);
 }
 
-/// Passes the contact force through the energy tank and the gate; the tank then receives the gate's output.
-PALPATE_INLINE void HapticServo::pass(detail::Hand& hand, Status shared) noexcept {
-  const ContactTool& tool = hand.tool;
-  const detail::ToolInput& input = hand.input;
-  const Eigen::Isometry3d& pose = tissue_.to_world();
+/// The error of the force of all tissues that press a tool: bounds add up, expected errors count as far as they are
+/// along the force. A tool that nothing presses has the largest of the errors.
+PALPATE_INLINE void HapticServo::add_errors(detail::Hand& hand, const Vector3& force) noexcept {
+  if (tissues_.size() == 1) {
+    hand.error = tissues_.front().touch(hand.number).error;
+    return;
+  }
+  hand.error = {0.0, 0.0, force.norm(), {0.0}};
+  double largest = 0.0;
+  for (const detail::TouchedTissue& tissue : tissues_) largest = std::max(largest, tissue.force_on(hand.number).norm());
+  for (const detail::TouchedTissue& tissue : tissues_) {
+    const ForceError& own = tissue.touch(hand.number).error;
+    const Vector3 pressing = tissue.force_on(hand.number);
+    const double length = pressing.norm();
+    if (largest > 0.0 ? !(length > 0.0) : !(own.bound > hand.error.bound)) continue;
+    if (largest == 0.0) {
+      hand.error = own;
+      continue;
+    }
+    if (hand.error.force > 0.0) hand.error.expected += own.expected * pressing.dot(force) / (length * hand.error.force);
+    hand.error.bound += own.bound;
+    hand.error.parts += own.parts;
+  }
+}
+
+/// Passes the force of all tissues through the energy tank and the gate; the tank then receives the gate's output. A
+/// tool has the flags of the tissues that press it, and of all of them those of its input and of the solution.
+PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
+  const std::size_t i = hand.number;
+  const detail::ToolInput& input = tissues_.front().touch(i).input;
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
-  if (hand.blade) force = hand.blade->force();
-  const double factor = estimate_error(hand);
-  if (tool.active) force = factor * (rotation_of(pose) * tool.force);
-  if (tool.active && input.rotates()) torque = factor * (rotation_of(pose) * tool.torque);
-  Status limited = hand.blade ? hand.blade->status() : Status{};
+  double most = -1.0, time = infinity;
+  bool is_readable = true, has_restarted = false;
+  Status status;
+  for (std::size_t k = 0; k < tissues_.size(); ++k) {
+    detail::TouchedTissue& tissue = tissues_[k];
+    detail::Touch& touch = tissue.touch(i);
+    tissue.estimate_error(i, corrected_force_);
+    const Vector3 own = touch.correction * tissue.force_on(i);
+    force += own;
+    if (touch.input.rotates()) torque += touch.correction * tissue.torque_on(i);
+    if (own.norm() > most) most = own.norm(), hand.tissue = k;
+    is_readable = is_readable && touch.input.readable();
+    has_restarted = has_restarted || touch.input.restarted();
+    status |= tissue.solved();
+    const Status of_tissue = tissue.news() | tissue.status_of(i, stale_tissue_after_);
+    if (tissues_.size() > 1 && !touch.presses()) {
+      status |= touch.input.status();
+      if (touch.lost_contact) status.set(StatusFlag::lost_contact);
+      continue;
+    }
+    status |= of_tissue;
+    if (tissue.view().has_updates()) time = std::min(time, touch.input.stamp(stale_tissue_after_));
+  }
+  time = std::min(time, input.time());
+  add_errors(hand, force);
+  Status limited;
   if (hand.tank) {
-    if (!input.readable() || input.restarted()) hand.tank->forget();
-    force = hand.tank->limit(force, pose * input.position(), input.time(), limited);
+    if (!is_readable || has_restarted) hand.tank->forget();
+    force = hand.tank->limit(force, tissues_.front().device_position(i), input.time(), limited);
     torque *= hand.tank->gain();
   }
-  const double time = tissue_.has_updates() ? input.stamp(stale_tissue_after_) : input.time();
-  hand.force = hand.gate.apply(force, torque, input.now(), time, input.readable(), input.restarted());
+  hand.force = hand.gate.apply(force, torque, input.now(), time, is_readable, has_restarted);
   if (hand.tank) hand.tank->gave(hand.force.force());
-  hand.force.status |= shared | limited | status_of(hand);
+  hand.force.status |= status | limited;
   hand.force.error = hand.error;
-}
-
-/// What is to be reported of a tool at the end of a tick.
-PALPATE_INLINE Status HapticServo::status_of(detail::Hand& hand) noexcept {
-  Status status = hand.input.status() | problem_->status_of(hand.number, hand.tool);
-  if (tissue_.has_updates() && hand.input.is_stalled(stale_tissue_after_)) status.set(StatusFlag::stalled_tissue);
-  hand.lost_contact = !hand.blade && detail::ToolRecovery(tissue_, *problem_).has_lost_contact(hand);
-  if (hand.lost_contact) status.set(StatusFlag::lost_contact);
-  const ForceErrorParts& parts = hand.error.parts;
-  const double large = ContactProblem::flagged_error * problem_->scale_of_force(hand.number, hand.error.force);
-  const auto is_large = [&](double part) { return part > large && part < infinity; };
-  if (is_large(parts.mesh)) status.set(StatusFlag::coarse_contact);
-  if (is_large(parts.merged) && problem_->has_fewer_points(hand.number)) status.set(StatusFlag::degraded_model);
-  if (is_large(parts.linearity)) status.set(StatusFlag::large_displacement);
-  return status;
 }
 
 PALPATE_INLINE void HapticServo::publish() noexcept {
   const TickView view = tick_view();
   Snapshot& s = snapshots_.back();
-  s.note(problem_->contacts(), problem_->vertex_forces(), tissue_.to_world());
+  s.clear();
+  for (std::size_t k = 0; k < tissues_.size(); ++k) {
+    const ContactProblem& problem = tissues_[k].problem();
+    s.note(k, problem.contacts(), problem.vertex_forces(), tissues_[k].view().to_world());
+  }
   for (const detail::Hand& hand : hands_) {
     const std::size_t i = hand.number;
     s.proxies[i] = view.proxy(i);
     s.axes[i] = view.proxy_axis(i);
     s.errors[i] = hand.error;
-    if (hand.tool.hull != nullptr) s.rotations[i] = view.proxy_rotation(i);
-    if (hand.blade) s.note_blade(static_cast<int>(i), s.proxies[i], hand.blade->force());
+    if (tissues_.front().touch(i).tool.hull != nullptr) s.rotations[i] = view.proxy_rotation(i);
+    for (std::size_t k = 0; k < tissues_.size(); ++k)
+      if (const auto& blade = tissues_[k].touch(i).blade)
+        s.note_blade(k, static_cast<int>(i), blade->cut().edge(), blade->force());
   }
-  s.time = hands_.front().input.time();
+  s.time = tissues_.front().touch(0).input.time();
   newest_ = &s;
   snapshots_.publish();
 }

@@ -17,11 +17,11 @@ namespace palpate { inline namespace PALPATE_ABI {
 /// another rate.
 ServoOptions servo_options(const std::vector<DeviceLimits>& devices, std::size_t tools, const ServoOptions& options);
 
-/// One or more devices with a tool each, one tissue, one servo and one loop. Force limits, coupling stiffness and rate
-/// are those of each device's limits(); the loop and the servo have one rate. State number i, read from device i, moves
-/// tool i, and force number i is written to device i; devices with a function note(Status), or note(Status, now),
-/// receive the status of their tool and the present time that it was given. Every start begins as a new session does,
-/// except that the heat of the motors is kept; so does a start that a ReplayDevice repeats.
+/// One or more devices with a tool each, one tissue or a TissueGroup, one servo and one loop. Force limits, coupling
+/// stiffness and rate are those of each device's limits(); the loop and the servo have one rate. State number i, read
+/// from device i, moves tool i, and force number i is written to device i; devices with a function note(Status), or
+/// note(Status, now), receive the status of their tool and the present time that it was given. Every start begins as a
+/// new session does, except that the heat of the motors is kept; so does a start that a ReplayDevice repeats.
 ///
 /// Refers to devices and tissue, which must outlive it; neither copied nor moved. Threads: start, run, stop and the
 /// destructor belong to one thread; running and progress to any; snapshot to one reader. For an SDK that owns the
@@ -31,17 +31,26 @@ class HapticSession {
   /// Throws bad_argument for what HapticServo refuses, for options beyond a device's limits or with devices,
   /// when there is not one tool per device, and for a device given twice. Allocates everything that a tick needs.
   template <HapticDevice D, class T>
-  HapticSession(D& device, T& tissue, const ToolList& tool, const ServoOptions& options = {})
-      : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, TissueView(tissue), tool, options) {
-  }
+  requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
+      HapticSession(D& device, T& tissue, const ToolList& tool, const ServoOptions& options = {})
+      : HapticSession(device, TissueGroup(tissue), tool, options) {}
+  template <HapticDevice D>
+  HapticSession(D& device, const TissueGroup& tissues, const ToolList& tool, const ServoOptions& options = {})
+      : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, tissues, tool, options) {}
   /// Several devices of any types: std::tie(left, right).
   template <HapticDevice... D, class T>
-  HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools, const ServoOptions& options = {})
-      : HapticSession(detail::loop_devices(devices), TissueView(tissue), tools, options) {}
+  requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
+      HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools,
+                    const ServoOptions& options = {})
+      : HapticSession(devices, TissueGroup(tissue), tools, options) {}
+  template <HapticDevice... D>
+  HapticSession(const std::tuple<D&...>& devices, const TissueGroup& tissues, const ToolList& tools,
+                const ServoOptions& options = {})
+      : HapticSession(detail::loop_devices(devices), tissues, tools, options) {}
   /// A temporary device or tissue.
   template <class D, class T>
   requires((!std::is_lvalue_reference_v<D> && HapticDevice<D>) ||
-           (!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueView>))
+           (!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueGroup>))
       HapticSession(D&&, T&&, const ToolList&, const ServoOptions& = {})
   = delete;
   HapticSession(const HapticSession&) = delete;
@@ -73,7 +82,7 @@ class HapticSession {
   const HapticServo& servo() const noexcept { return servo_; }
 
  private:
-  HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue, const ToolList& tools,
+  HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues, const ToolList& tools,
                 const ServoOptions& options);
 
   HapticServo servo_;

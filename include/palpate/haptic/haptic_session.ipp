@@ -92,9 +92,9 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
   return o;
 }
 
-PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueView& tissue,
+PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues,
                                             const ToolList& tools, const ServoOptions& options)
-    : servo_(tissue, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}),
+    : servo_(tissues, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}),
       rate_(options.rate.value_or(detail::rate_of(devices))),
       loop_(std::make_unique<detail::HapticLoop>(devices, detail::session_servo(servo_), rate_)) {}
 

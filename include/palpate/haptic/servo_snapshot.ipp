@@ -9,42 +9,43 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-PALPATE_INLINE ServoSnapshot::ServoSnapshot(int capacity)
-    : forces(3 * static_cast<std::size_t>(capacity)), contacts(static_cast<std::size_t>(capacity) + maximum_tools) {
+PALPATE_INLINE ServoSnapshot::ServoSnapshot(int capacity, std::size_t tissues)
+    : forces(static_cast<std::size_t>(vertices_per_contact) * static_cast<std::size_t>(capacity)),
+      force_end(tissues, 0),
+      contacts(static_cast<std::size_t>(capacity) + maximum_tools * tissues) {
   proxies.fill(Vector3::Zero());
   axes.fill(Vector3::Zero());
   rotations.fill(Matrix3::Identity());
 }
 
-PALPATE_INLINE void ServoSnapshot::note(std::span<const Contact> all, std::span<const VertexForce> on_vertices,
+PALPATE_INLINE void ServoSnapshot::note(std::size_t tissue, std::span<const Contact> all,
+                                        std::span<const VertexForce> on_vertices,
                                         const Eigen::Isometry3d& pose) noexcept {
-  std::copy(on_vertices.begin(), on_vertices.end(), forces.begin());
-  force_count = on_vertices.size();
-  contact_count = 0;
+  const std::size_t first = tissue > 0 ? force_end[tissue - 1] : 0;
+  std::copy(on_vertices.begin(), on_vertices.end(), forces.begin() + static_cast<std::ptrdiff_t>(first));
+  force_end[tissue] = first + on_vertices.size();
+  const int number = static_cast<int>(tissue);
   for (const Contact& c : all)
     if (c.force > 0.0 && !c.grasped)
-      contacts[contact_count++] = {c.tool,
-                                   pose * c.point,
-                                   rotation_of(pose) * c.normal,
-                                   c.force,
-                                   rotation_of(pose) * c.friction,
-                                   false,
-                                   false,
-                                   c.vertices,
-                                   c.weights};
+      contacts[contact_count++] = {c.tool,         number,
+                                   pose * c.point, rotation_of(pose) * c.normal,
+                                   c.force,        rotation_of(pose) * c.friction,
+                                   false,          false,
+                                   c.vertices,     c.weights};
   for (std::size_t i = 0; i + 2 < all.size(); ++i) {
     if (!all[i].grasped) continue;
     const Vector3 total = all[i].total() + all[i + 1].total() + all[i + 2].total();
-    note_grasped(all[i], pose * all[i].point, rotation_of(pose) * total);
+    note_grasped(number, all[i], pose * all[i].point, rotation_of(pose) * total);
     i += 2;
   }
 }
 
-PALPATE_INLINE void ServoSnapshot::note_blade(int tool, const Vector3& edge, const Vector3& force) noexcept {
+PALPATE_INLINE void ServoSnapshot::note_blade(std::size_t tissue, int tool, const Vector3& edge,
+                                              const Vector3& force) noexcept {
   const double length = force.norm();
   if (!(length > 0.0)) return;
-  ToolContact& blade = contacts[contact_count++];
-  blade = {tool, edge, force / length, length, Vector3::Zero(), false, true, {}, {}};
+  contacts[contact_count++] = {
+      tool, static_cast<int>(tissue), edge, force / length, length, Vector3::Zero(), false, true, {}, {}};
 }
 
 PALPATE_INLINE Vector3 ServoSnapshot::contact_force(std::size_t tool) const noexcept {
@@ -68,12 +69,12 @@ PALPATE_INLINE std::ostream& operator<<(std::ostream& out, const ServoSnapshot& 
 }
 
 /// Combines the three rows of a grasped point into one force.
-PALPATE_INLINE void ServoSnapshot::note_grasped(const Contact& row, const Vector3& point,
+PALPATE_INLINE void ServoSnapshot::note_grasped(int tissue, const Contact& row, const Vector3& point,
                                                 const Vector3& total) noexcept {
   const double force = total.norm();
   if (!(force > 0.0)) return;
-  ToolContact& grasp = contacts[contact_count++];
-  grasp = {row.tool, point, total / force, force, Vector3::Zero(), true, false, row.vertices, row.weights};
+  contacts[contact_count++] = {row.tool,        tissue, point, total / force, force,
+                               Vector3::Zero(), true,   false, row.vertices,  row.weights};
 }
 
 }}  // namespace palpate

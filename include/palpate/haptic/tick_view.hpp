@@ -2,21 +2,21 @@
 #pragma once
 
 #include <palpate/concepts/force_error.hpp>
-#include <palpate/contact/tissue_view.hpp>
 #include <palpate/core/types.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/servo_snapshot.hpp>
 
 #include <span>
+#include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
 class BladeCut;
-class ContactProblem;
 
 namespace detail {
 
 struct Hand;
+class TouchedTissue;
 
 }  // namespace detail
 
@@ -33,7 +33,8 @@ class TickView {
   /// is missing since contacts are more than ServoOptions::contact allows (degraded_model).
   double missing_depth() const noexcept;
 
-  /// Position of the tool on the surface, or the middle of a blade's edge, world frame [m].
+  /// Position of the tool on the surface of the tissue that it presses most, or the middle of a blade's edge, world
+  /// frame [m].
   Vector3 proxy(std::size_t tool = 0) const noexcept;
   /// Axis of a capsule on the surface, or of a blade's edge, world frame.
   Vector3 proxy_axis(std::size_t tool = 0) const noexcept;
@@ -52,19 +53,22 @@ class TickView {
   double indentation(std::size_t tool = 0) const noexcept;
   /// Whether a tool grasps a point of the surface.
   bool is_holding(std::size_t tool = 0) const noexcept;
-  /// State of a blade; null for another tool.
-  const BladeCut* blade(std::size_t tool = 0) const noexcept;
+  /// State of a blade in a tissue; null for another tool, or for tissue that cannot be cut.
+  const BladeCut* blade(std::size_t tool = 0, std::size_t tissue = 0) const noexcept;
+  /// What a tissue reported at the beginning of the tick, and what the solution of its contact did. A tool has these
+  /// flags only if it presses the tissue.
+  Status tissue_status(std::size_t tissue = 0) const noexcept;
   /// Energy tank of a tool; null without one.
   const EnergyTank* energy(std::size_t tool = 0) const noexcept;
 
  private:
   friend class HapticServo;
-  TickView(const TissueView& tissue, const ContactProblem& problem, const detail::Hand* hands,
+  TickView(const std::vector<detail::TouchedTissue>& tissues, const detail::Hand* hands,
            const ServoSnapshot* const& newest) noexcept
-      : tissue_(tissue), problem_(problem), hands_(hands), newest_(newest) {}
+      : tissues_(tissues), hands_(hands), newest_(newest) {}
+  const detail::TouchedTissue& pressed(std::size_t tool) const noexcept;
 
-  const TissueView& tissue_;
-  const ContactProblem& problem_;
+  const std::vector<detail::TouchedTissue>& tissues_;
   const detail::Hand* hands_;  // one per tool
   const ServoSnapshot* const& newest_;
 };

@@ -1,4 +1,4 @@
-// The laws of a tissue that is another one in a different form: an adaptor that changes nothing, a group of one.
+// The laws of a tissue that is another one in a different form: an adaptor that changes nothing.
 #pragma once
 
 #include <palpate/contact/tissue_view.hpp>
@@ -30,8 +30,8 @@ inline bool same(const ForceError& a, const ForceError& b) noexcept {
   return a.expected == b.expected && a.bound == b.bound && a.force == b.force && a.parts.values() == b.parts.values();
 }
 
-/// Background work is done after every tick.
-template <TissueModel T>
+/// Of a tissue or a TissueGroup. Background work of a tissue is done after every tick.
+template <class T>
 std::vector<TickResult> run_session(T& tissue, const ToolList& tools, std::span<const ToolState> path,
                                     const ServoOptions& options) {
   HapticServo servo(tissue, tools, options);
@@ -57,10 +57,10 @@ inline bool same_surface(const ContactSurface& a, const ContactSurface& b) {
 
 }  // namespace detail
 
-/// Laws of `same`, which is `tissue` in another form: a class derived from TissueAdaptor that changes nothing, or a
-/// TissueGroup of one. All of them hold to the last bit: "same surface", "same pose", "same scales" of the compliance,
-/// "same hooks", and of a session that follows the path: "same force" with proxy and torque, "same status", "same
-/// error" of the force, "same contacts". State k is that of the first tool in tick k; further tools stay in the air.
+/// Laws of `same`, which is `tissue` in another form: a class derived from TissueAdaptor that changes nothing. All of
+/// them hold to the last bit: "same surface", "same pose", "same scales" of the compliance, "same hooks", and of a
+/// session that follows the path: "same force" with proxy and torque, "same status", "same error" of the force, "same
+/// contacts". State k is that of the first tool in tick k; further tools stay in the air.
 /// For a tissue that moves or is cut, `same` must be another form of a second tissue in the same state; its background
 /// work is done after every tick. Cost: two servos and two sessions of the length of the path.
 template <TissueModel T, TissueModel Same>

@@ -58,7 +58,6 @@ class ContactSamples::Builder {
       const ContactSample& s = made_.samples_[i];
       for (std::size_t a = 0; a < 3; ++a) p.position += s.weights[a] * at_rest(s.vertices[a]);
       if (const double length = p.normal.norm(); length > 0.0) p.normal /= length;
-      p.body = body_of(s.vertices[0]);
       p.key = key_of(s);
     }
   }
@@ -144,7 +143,6 @@ class ContactSamples::Builder {
   struct Point {
     Vector3 position = Vector3::Zero(), normal = Vector3::Zero();
     double area = 0.0;  // of level 0
-    int body = 0;
     std::uint64_t key = 0;
   };
 
@@ -194,7 +192,7 @@ class ContactSamples::Builder {
     /// Infinite for points that are not neighbours.
     double squared_distance(const Point& p, int i) const noexcept {
       const Point& other = points_[at(i)];
-      if (other.body != p.body || !(other.normal.dot(p.normal) > 0.5)) return infinity;
+      if (!(other.normal.dot(p.normal) > 0.5)) return infinity;
       return (other.position - p.position).squaredNorm();
     }
     /// Calls `visitor` with the points of the eight cells until it returns true; whether it did.
@@ -222,26 +220,20 @@ class ContactSamples::Builder {
     return z ^ z >> 31;
   }
 
-  /// Where the half-space is known, places are in its frame: a body in a group has the same levels and areas as alone.
+  /// Where the half-space is known, places are in its frame, which no load moves.
   const Vector3& at_rest(int v) const noexcept {
     const SubfacetCompliance* const known = surface_.subfacet().get();
     return known != nullptr && known->has_place(v) ? known->vertex(v).position : surface_.position(v);
   }
-  /// A number that a point keeps when other triangles are cut, or its body joins others.
+  /// A number that a point keeps when other triangles are cut.
   std::uint64_t key_of(const ContactSample& s) const noexcept {
     std::uint64_t key = 0;
     for (std::size_t a = 0; a < 3; ++a) {  // in any order
       if (s.weights[a] == 0.0) continue;
-      const auto vertex =
-          static_cast<std::uint64_t>(s.vertices[a] - surface_.known_errors(body_of(s.vertices[a])).first);
+      const auto vertex = static_cast<std::uint64_t>(s.vertices[a]);
       key += mixed(vertex << 32 ^ static_cast<std::uint64_t>(std::llround(s.weights[a] * 0x1p24)));
     }
     return mixed(key);
-  }
-  int body_of(int vertex) const noexcept {
-    int body = surface_.body_count() - 1;
-    while (body > 0 && vertex < surface_.known_errors(body).first) --body;
-    return body;
   }
   double length(int a, int b) const noexcept { return (surface_.position(a) - surface_.position(b)).norm(); }
   int parts(const Triangle& t) const noexcept {

@@ -21,7 +21,7 @@ struct HalfSpacePoint {
   double length = 0.0;                 ///< mean length of the edges here [m]: the scale of half_space_support
   double edge_nearness = 0.0;          ///< nearness of a sharp edge, linear between vertices: above 1 is too near
   double bending_error = 0.0;          ///< of the stiffness of a thin body in bending, relative, by its elements
-  int body = 0;                        ///< points of different bodies have nothing of each other
+  int body = 0;                        ///< part of the mesh that shares no node with others: these have nothing of it
   bool is_disturbed = false;           ///< too different from a half-space for its elements: edge, support, another
                                        ///< material or a cut
   bool is_fixed = false;               ///< its displacement along the normal is prescribed: `root` is 0
@@ -78,6 +78,7 @@ PALPATE_ALWAYS_INLINE double half_space_support(double distance, double normals)
   return nearness > 0.0 ? nearness * step(-2.0 * normals) : 0.0;
 }
 PALPATE_ALWAYS_INLINE double half_space_support(const HalfSpacePoint& p, const HalfSpacePoint& q) noexcept {
+  if (p.body != q.body) return 0.0;
   return half_space_support((p.position - q.position).norm() / (p.length + q.length), p.normal.dot(q.normal));
 }
 

@@ -49,6 +49,8 @@ class ToolInput {
   /// Whether that happened in this tick.
   bool is_lost() const noexcept { return readable() && known_ != Known::position; }
   void reset() noexcept;
+  /// The target was moved within a tick [m].
+  void move(const Vector3& path) noexcept { position_ += path; }
 
   const Vector3& position() const noexcept { return position_; }  ///< last valid one, model frame [m]
   const Vector3& rotation() const noexcept { return rotation_; }  ///< since the last valid one, world frame [rad]

@@ -3,7 +3,7 @@
 
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/tissue_view.hpp>
-#include <palpate/haptic/detail/hand.hpp>
+#include <palpate/haptic/detail/touched_tissue.hpp>
 
 #include <span>
 
@@ -18,18 +18,18 @@ class ToolRecovery {
 
   /// Lost tools are swept again from where they were outside, and tools on the way the rest of it; true if there are
   /// any.
-  bool sweep_lost_tools(std::span<Hand> hands) const noexcept;
+  bool sweep_lost_tools(std::span<Touch> touches) const noexcept;
   /// Spheres that are still lost are placed beside the surface as the other tools deform it; true if there are any.
-  bool place_lost_tools(std::span<Hand> hands) const noexcept;
+  bool place_lost_tools(std::span<Touch> touches) const noexcept;
   /// A tool that is lost even so is placed on the resting surface in the next tick, with the ramp.
-  void recover(Hand& hand) const noexcept;
+  void recover(Touch& touch) const noexcept;
   /// Whether a tool is inside the body or beside what can be touched of it without a force, is pushed by facets that it
   /// has passed, or presses beyond the rim. Remains true until no such facet pushes and the tool is outside the
   /// deformed body. Call it at the end of a tick, after `recover`.
-  bool has_lost_contact(const Hand& hand) const noexcept;
+  bool has_lost_contact(const Touch& touch) const noexcept;
 
  private:
-  bool is_lost(Hand& hand) const noexcept;
+  bool is_lost(Touch& touch) const noexcept;
   bool is_free(const Vector3& position, double depth) const noexcept;
 
   const TissueView& tissue_;

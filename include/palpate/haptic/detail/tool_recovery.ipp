@@ -22,9 +22,9 @@ inline bool is_on_the_way(const ContactTool& tool) noexcept {
 /// Notes whether a tool without force overlaps a part of the body that cannot be touched, and returns whether its proxy
 /// is inside the body without any contact, and got there through the touchable surface. A
 /// tool that entered elsewhere passes until it is outside again.
-PALPATE_INLINE bool ToolRecovery::is_lost(Hand& hand) const noexcept {
-  const ContactTool& tool = hand.tool;
-  ToolInput& input = hand.input;
+PALPATE_INLINE bool ToolRecovery::is_lost(Touch& touch) const noexcept {
+  const ContactTool& tool = touch.tool;
+  ToolInput& input = touch.input;
   if (!tool.active || !is_zero(tool.force)) return false;
   const ContactSurface& surface = tissue_.contact_surface();
   input.set_beside_surface(false);
@@ -54,13 +54,13 @@ PALPATE_INLINE bool ToolRecovery::is_free(const Vector3& position, double depth)
   return !problem_.vertex_forces().empty() && problem_.closest(tissue_, position, depth).distance > 0.0;
 }
 
-PALPATE_INLINE bool ToolRecovery::sweep_lost_tools(std::span<Hand> hands) const noexcept {
+PALPATE_INLINE bool ToolRecovery::sweep_lost_tools(std::span<Touch> touches) const noexcept {
   const ContactSurface& surface = tissue_.contact_surface();
   bool any = false;
-  for (Hand& hand : hands) {
-    ContactTool& tool = hand.tool;
-    if (is_lost(hand)) {
-      any = hand.input.sweep_from_outside(surface, tool) || any;
+  for (Touch& touch : touches) {
+    ContactTool& tool = touch.tool;
+    if (is_lost(touch)) {
+      any = touch.input.sweep_from_outside(surface, tool) || any;
     } else if (is_on_the_way(tool)) {
       sweep(tool, surface, tool.proxy, tool.target);
       any = true;
@@ -69,11 +69,11 @@ PALPATE_INLINE bool ToolRecovery::sweep_lost_tools(std::span<Hand> hands) const 
   return any;
 }
 
-PALPATE_INLINE bool ToolRecovery::place_lost_tools(std::span<Hand> hands) const noexcept {
+PALPATE_INLINE bool ToolRecovery::place_lost_tools(std::span<Touch> touches) const noexcept {
   bool any = false;
-  for (Hand& hand : hands) {
-    ContactTool& tool = hand.tool;
-    if (tool.half_length > 0.0 || problem_.vertex_forces().empty() || !is_lost(hand)) continue;
+  for (Touch& touch : touches) {
+    ContactTool& tool = touch.tool;
+    if (tool.half_length > 0.0 || problem_.vertex_forces().empty() || !is_lost(touch)) continue;
     const double depth = tissue_.contact_surface().distance_of_body(tool.target);
     const auto closest = problem_.closest(tissue_, tool.target, std::abs(depth));
     if (closest.triangle < 0) continue;
@@ -83,21 +83,21 @@ PALPATE_INLINE bool ToolRecovery::place_lost_tools(std::span<Hand> hands) const 
   return any;
 }
 
-PALPATE_INLINE void ToolRecovery::recover(Hand& hand) const noexcept {
-  if (is_lost(hand))
-    hand.input.lose();
-  else if (!hand.input.is_passing())
-    hand.input.note_outside(problem_.contacts(), hand.tool);
+PALPATE_INLINE void ToolRecovery::recover(Touch& touch) const noexcept {
+  if (is_lost(touch))
+    touch.input.lose();
+  else if (!touch.input.is_passing())
+    touch.input.note_outside(problem_.contacts(), touch.tool);
 }
 
-PALPATE_INLINE bool ToolRecovery::has_lost_contact(const Hand& hand) const noexcept {
+PALPATE_INLINE bool ToolRecovery::has_lost_contact(const Touch& touch) const noexcept {
   constexpr double most_from_behind = 0.1, most_on_rim = 0.2;
-  const ContactTool& tool = hand.tool;
+  const ContactTool& tool = touch.tool;
   if (!tool.active) return false;
-  if (is_zero(tool.force)) return hand.input.is_passing() || hand.input.is_lost() || hand.input.is_beside_surface();
-  if (problem_.force_from_behind(tissue_, hand.number) > most_from_behind) return true;
-  if (problem_.force_on_rim(tissue_, hand.number) > most_on_rim) return true;
-  if (!hand.lost_contact) return false;
+  if (is_zero(tool.force)) return touch.input.is_passing() || touch.input.is_lost() || touch.input.is_beside_surface();
+  if (problem_.force_from_behind(tissue_, touch.number) > most_from_behind) return true;
+  if (problem_.force_on_rim(tissue_, touch.number) > most_on_rim) return true;
+  if (!touch.lost_contact) return false;
   const double distance = tissue_.contact_surface().distance_of_body(tool.proxy);
   return distance < 0.0 && !is_free(tool.proxy, -distance);
 }

@@ -4,6 +4,7 @@
 #include <palpate/core/executor.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/local/detail/split_elasticity.hpp>
+#include <palpate/mesh/detail/components.hpp>
 #include <palpate/model/detail/patch_projection.hpp>
 #include <palpate/model/detail/project_half_space.hpp>
 
@@ -157,10 +158,12 @@ class HalfSpaceTable {
 };
 
 PALPATE_INLINE void HalfSpaceTable::place_vertices() {
+  const MeshComponents components = connected_components(source_.mesh);
   for (std::size_t v = 0; v < source_.touched.size(); ++v) {
     const NodeId node = source_.touched[v];
     const VertexMaterial& material = source_.materials[v];
     HalfSpacePoint& point = points_.emplace_back();
+    point.body = static_cast<int>(components.of_node[static_cast<std::size_t>(node)]);
     point.position = source_.position(node);
     point.normal = source_.boundary.normal(node);
     point.length = source_.boundary.length(node);

@@ -29,7 +29,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> our_magic{'\x89', 'p', 'a', 'l', 'p', 'a', 't', 'e'};
   static constexpr std::uint64_t our_byte_order = 0x0102030405060708u;
-  static constexpr std::uint64_t our_layout = 2;  ///< increment when the file layout changes
+  static constexpr std::uint64_t our_layout = 3;  ///< increment when the file layout changes
 
   std::array<char, 8> magic = our_magic;
   std::uint64_t byte_order = our_byte_order;
