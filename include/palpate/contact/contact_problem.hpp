@@ -51,6 +51,10 @@ class ContactProblem {
   /// Back to the state after construction: the next ticks are bitwise equal to the first ticks.
   void reset() noexcept;
 
+  /// Coulomb's coefficient from the next tick on; without effect where it was zero at construction.
+  void set_friction(double coefficient) noexcept { rows_.set_friction(coefficient); }
+  bool has_friction() const noexcept { return rows_.has_friction(); }
+
   /// Largest number of contacts.
   int capacity() const noexcept { return rows_.capacity(); }
   /// Rows of the last linearisation: points that press, and points that would have penetrated; some without force.

@@ -26,6 +26,10 @@ class CoulombFriction {
 
   bool acts() const noexcept { return coefficient_ > 0.0; }
   double coefficient() const noexcept { return coefficient_; }
+  /// Changes the coefficient. It stays zero, or above 1e-9: workspaces and contacts in progress are those of its kind.
+  void set_coefficient(double coefficient) noexcept {
+    if (acts()) coefficient_ = coefficient > 1e-9 ? coefficient : 1e-9;
+  }
 
   /// Contact i: its unit normal, the drift d_i [m], and the friction force on the tool to start from [N]. A contact
   /// that does not stick has no friction: it came into contact in this tick.

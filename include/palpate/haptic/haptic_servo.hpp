@@ -77,6 +77,20 @@ class HapticServo {
   /// tick's own thread.
   void release() noexcept;
 
+  // Any thread, also while another one ticks
+
+  /// Changes Coulomb's coefficient of a tissue within 0.1 s. Throws bad_argument unless it is finite and not negative,
+  /// index_out_of_range for a tissue that does not exist, and unsupported where it was zero at construction: without
+  /// friction a servo has no room for it.
+  void set_friction(double coefficient, std::size_t tissue = 0);
+  double friction(std::size_t tissue = 0) const noexcept;
+  /// Changes the stiffness of the coupling of a tool within 0.1 s [N/m]. Throws bad_argument for a stiffness that the
+  /// constructor refuses, index_out_of_range for a tool that does not exist, unsupported for a blade.
+  void set_coupling_stiffness(double stiffness, std::size_t tool = 0);
+  double coupling_stiffness(std::size_t tool = 0) const noexcept;
+
+  // The thread that ticks
+
   /// What the last tick computed: contacts, proxies, forces before the gate and their errors. For the tick's own
   /// thread.
   TickView tick_view() const& noexcept;
@@ -100,6 +114,7 @@ class HapticServo {
   void check_units();
   void check_blades() const;
   detail::Hand make_hand(std::size_t i, const ServoOptions& options, const Energy& energy);
+  void follow_parameters() noexcept;
   void receive(std::span<const ToolState> states) noexcept;
   void solve() noexcept;
   void recover() noexcept;
@@ -113,6 +128,7 @@ class HapticServo {
   std::vector<GatedForce> forces_;
   std::vector<detail::Hand> hands_;  // refer to forces
   double stale_tissue_after_, force_tolerance_;
+  int ramp_ticks_;  // of parameters that change
   bool corrected_force_;
   TripleBuffer<Snapshot> snapshots_;
   const Snapshot* newest_ = &snapshots_.back();  // published last; not written before the next is published

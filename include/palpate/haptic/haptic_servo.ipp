@@ -18,6 +18,12 @@ namespace detail {
 
 static_assert(Servo<HapticServo>);
 
+inline void require_index(std::size_t index, std::size_t count, const char* what) {
+  if (index < count) return;
+  raise(SetupErrorKind::index_out_of_range, std::string("the servo has ") + std::to_string(count) + ' ' + what +
+                                                (count == 1 ? "" : "s") + ", not number " + std::to_string(index));
+}
+
 inline ToolState unreadable() noexcept {
   ToolState s;
   s.valid = false;
@@ -55,6 +61,7 @@ PALPATE_INLINE HapticServo::HapticServo(const TissueGroup& tissues, const ToolLi
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
       force_tolerance_(options.contact.force_tolerance),
+      ramp_ticks_(static_cast<int>(std::clamp(0.1 * options.tick_rate(), 1.0, 1e6))),
       corrected_force_(options.corrected_force) {
   if (!(options.stale_tissue_after > 0.0))
     raise(SetupErrorKind::bad_argument, "stale_tissue_after is " + number(options.stale_tissue_after),
@@ -121,7 +128,8 @@ PALPATE_INLINE void HapticServo::check_blades() const {
 }
 
 PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOptions& options, const Energy& energy) {
-  detail::Hand hand{i, forces_[i], ForceGate(options.limits(i))};
+  detail::Hand hand{i, forces_[i], ForceGate(options.limits(i)),
+                    detail::RampedValue(1.0 / detail::coupling_stiffness_of(i, options))};
   hand.tank = energy;
   if (!energy && options.limit_energy) hand.tank.emplace(EnergyLimits::from(options.device_of(i)));
   return hand;
@@ -130,6 +138,7 @@ PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOpt
 PALPATE_INLINE std::span<const GatedForce> HapticServo::tick(std::span<const ToolState> states) noexcept {
   const FlushDenormals flush;
   for (detail::TouchedTissue& tissue : tissues_) tissue.take_news();
+  follow_parameters();
   receive(states);
   for (detail::TouchedTissue& tissue : tissues_) tissue.note_updates();
   solve();
@@ -148,6 +157,41 @@ PALPATE_INLINE void HapticServo::reset() noexcept {
 
 PALPATE_INLINE void HapticServo::release() noexcept {
   for (detail::TouchedTissue& tissue : tissues_) tissue.release();
+}
+
+PALPATE_INLINE void HapticServo::set_friction(double coefficient, std::size_t tissue) {
+  detail::require_index(tissue, tissues_.size(), "tissue");
+  detail::RampedValue& friction = tissues_[tissue].friction();
+  if (!(coefficient >= 0.0 && coefficient < infinity))
+    raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(coefficient),
+          "It must be finite and not negative");
+  if (friction.wanted() == 0.0 && !tissues_[tissue].problem().has_friction() && coefficient > 0.0)
+    raise(SetupErrorKind::unsupported, "friction in a servo that was made without",
+          "Set ServoOptions::contact.friction, or that of the tissue in its group, to a value above zero");
+  friction.set(coefficient);
+}
+PALPATE_INLINE double HapticServo::friction(std::size_t tissue) const noexcept {
+  return tissues_[tissue].friction().wanted();
+}
+
+PALPATE_INLINE void HapticServo::set_coupling_stiffness(double stiffness, std::size_t tool) {
+  detail::require_index(tool, hands_.size(), "tool");
+  if (std::get_if<BladeTool>(&tools_[tool]) != nullptr)
+    raise(SetupErrorKind::unsupported, "another coupling for a blade", "Make another servo");
+  ServoOptions options;
+  options.coupling_stiffness = stiffness;
+  hands_[tool].compliance.set(1.0 / detail::coupling_stiffness_of(0, options));
+}
+PALPATE_INLINE double HapticServo::coupling_stiffness(std::size_t tool) const noexcept {
+  return 1.0 / hands_[tool].compliance.wanted();
+}
+
+PALPATE_INLINE void HapticServo::follow_parameters() noexcept {
+  for (detail::TouchedTissue& tissue : tissues_) tissue.follow_parameters(ramp_ticks_);
+  for (detail::Hand& hand : hands_) {
+    const double compliance = hand.compliance.next(ramp_ticks_);
+    for (detail::TouchedTissue& tissue : tissues_) tissue.touch(hand.number).tool.compliance = compliance;
+  }
 }
 
 PALPATE_INLINE void HapticServo::receive(std::span<const ToolState> states) noexcept {

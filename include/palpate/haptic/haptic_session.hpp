@@ -80,12 +80,17 @@ class HapticSession {
   double rate() const noexcept { return rate_; }  ///< [1/s] of loop and servo
   /// Contacts, forces and gates of the last tick; not while running.
   const HapticServo& servo() const noexcept { return servo_; }
+  /// As those of HapticServo; for any thread, also while running. A coupling stiffer than the device renders stably is
+  /// refused as bad_argument.
+  void set_friction(double coefficient, std::size_t tissue = 0) { servo_.set_friction(coefficient, tissue); }
+  void set_coupling_stiffness(double stiffness, std::size_t tool = 0);
 
  private:
   HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues, const ToolList& tools,
                 const ServoOptions& options);
 
   HapticServo servo_;
+  std::vector<DeviceLimits> limits_;  // of the devices
   double rate_;
   std::unique_ptr<detail::HapticLoop> loop_;
 };

@@ -95,11 +95,19 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
 PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues,
                                             const ToolList& tools, const ServoOptions& options)
     : servo_(tissues, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}),
+      limits_(detail::limits_of(devices)),
       rate_(options.rate.value_or(detail::rate_of(devices))),
       loop_(std::make_unique<detail::HapticLoop>(devices, detail::session_servo(servo_), rate_)) {}
 
 PALPATE_INLINE HapticSession::~HapticSession() {
   if (loop_->is_started()) stop();
+}
+
+PALPATE_INLINE void HapticSession::set_coupling_stiffness(double stiffness, std::size_t tool) {
+  detail::require_index(tool, limits_.size(), "tool");
+  detail::WithinDevice(tool).require(stiffness, detail::stable_at(rate_, limits_[tool], limits_[tool].stiffness),
+                                     "coupling stiffness", "N/m", "Choose a smaller one");
+  servo_.set_coupling_stiffness(stiffness, tool);
 }
 
 PALPATE_INLINE LoopReport HapticSession::run(const LoopOptions& options) {

@@ -93,6 +93,7 @@ class ContactRows {
   /// Whether the last turn of slide changed the normal forces by less than a hundredth of the largest.
   bool has_converged() const noexcept { return !(alternation_change_ > unconverged_change); }
   bool has_friction() const noexcept { return friction_.acts(); }
+  void set_friction(double coefficient) noexcept { friction_.set_coefficient(coefficient); }
   /// Sum of force times penetration without contact force, over the rows of a tool: twice the energy of its contact, if
   /// no other tool presses [J].
   double push_work(int tool) const noexcept;

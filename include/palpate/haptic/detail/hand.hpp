@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
+#include <palpate/haptic/detail/ramped_value.hpp>
 #include <palpate/haptic/energy_tank.hpp>
 #include <palpate/haptic/force_gate.hpp>
 
@@ -15,6 +16,7 @@ struct Hand {
   std::size_t number;
   GatedForce& force;
   ForceGate gate;
+  RampedValue compliance;  // of the coupling [m/N]
   std::optional<EnergyTank> tank{};
   ForceError error{};
   std::size_t tissue = 0;  // that presses it most

@@ -10,6 +10,7 @@
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
+#include <palpate/haptic/detail/ramped_value.hpp>
 #include <palpate/haptic/detail/tool_input.hpp>
 #include <palpate/haptic/servo_options.hpp>
 
@@ -54,6 +55,8 @@ class TouchedTissue {
     solved_ = {};
     news_ = view_.begin_tick(*problem_);
   }
+  /// Follows the parameters that were set since.
+  void follow_parameters(int ramp_ticks) noexcept;
   void receive(std::size_t tool, const ToolState& state) noexcept;
   /// Notes when a tissue that moves by itself was last updated.
   void note_updates() noexcept;
@@ -75,6 +78,8 @@ class TouchedTissue {
   /// Of the last `take_news`; of all solutions since then.
   Status news() const noexcept { return news_; }
   Status solved() const noexcept { return solved_; }
+  RampedValue& friction() noexcept { return friction_; }
+  const RampedValue& friction() const noexcept { return friction_; }
   const TissueView& view() const noexcept { return view_; }
   const ContactProblem& problem() const noexcept { return *problem_; }
   ContactProblem& problem() noexcept { return *problem_; }
@@ -99,6 +104,7 @@ class TouchedTissue {
   std::unique_ptr<ContactProblem> problem_;
   CoarseFacetReport coarse_facets_;
   std::vector<Touch> touches_;  // refer to tools_
+  RampedValue friction_;
   Status news_, solved_;
   std::uint64_t updates_ = 0;
   bool started_ = false;

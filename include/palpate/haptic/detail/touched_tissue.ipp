@@ -55,7 +55,8 @@ PALPATE_INLINE TouchedTissue::TouchedTissue(const GroupMember& member, const Too
       claimed_(view_.claim()),
       tools_(make_contact_tools(tools, options)),
       problem_(prepared_problem(view_, tools_, contact_parameters(member, options.contact, tools.size()))),
-      coarse_facets_(report_coarse_facets(view_.contact_surface(), radii_of(tools_).smallest)) {
+      coarse_facets_(report_coarse_facets(view_.contact_surface(), radii_of(tools_).smallest)),
+      friction_(member.friction.value_or(options.contact.friction)) {
   if (view_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
@@ -69,6 +70,10 @@ PALPATE_INLINE Touch TouchedTissue::make_touch(std::size_t i, const ToolList& to
   Touch touch{i, tools_[i], ToolInput(static_cast<int>(i), rotates, options.grasp_buttons), blade != nullptr};
   if (blade != nullptr) touch.blade = view_.make_blade(*blade, coupling_stiffness_of(i, options));
   return touch;
+}
+
+PALPATE_INLINE void TouchedTissue::follow_parameters(int ramp_ticks) noexcept {
+  problem_->set_friction(friction_.next(ramp_ticks));
 }
 
 /// A blade restarts if it moved farther in a tick than the length of its edge.
