@@ -95,15 +95,18 @@ std::vector<M> materials_by_region(const Mesh& mesh, const RegionMaterials<M>& m
             "there is a material for region '" + name + "', but the mesh has no such region");
   }
   for (int r = 0; r < mesh.region_count(); ++r) {
-    const auto named =
-        std::ranges::find(materials, std::string(mesh.region_name(r)), &std::pair<std::string, M>::first);
-    const auto any = std::ranges::find(materials, everywhere, &std::pair<std::string, M>::first);
-    const auto it = named != materials.end() ? named : any;
-    if (it == materials.end())
+    const M* named = nullptr;
+    const M* any = nullptr;
+    for (const auto& [name, material] : materials) {
+      if (named == nullptr && name == mesh.region_name(r)) named = &material;
+      if (any == nullptr && name == everywhere) any = &material;
+    }
+    if (named == nullptr) named = any;
+    if (named == nullptr)
       raise(SetupErrorKind::missing_material, "region '" + std::string(mesh.region_name(r)) + "' has no material",
             "Give one material per region");
-    require_admissible(it->second, mesh, r);
-    result.push_back(it->second);
+    require_admissible(*named, mesh, r);
+    result.push_back(*named);
   }
   return result;
 }

@@ -500,8 +500,10 @@ PALPATE_INLINE double ContactProblem::error_of_points(std::size_t t) const noexc
 PALPATE_INLINE double ContactProblem::error_of_sphere(const ContactSurface& surface, const ForceAccuracy& accuracy,
                                                       std::size_t t, const ContactTool& tool) const noexcept {
   const auto rows = rows_.contacts();
-  const auto own = std::ranges::find(rows, static_cast<int>(t), &Contact::tool);
-  if (own == rows.end()) return infinity;
+  const Contact* own = nullptr;
+  for (const Contact& c : rows)
+    if (own == nullptr && c.tool == static_cast<int>(t)) own = &c;
+  if (own == nullptr) return infinity;
   const double modulus = surface.material(surface.triangles_at(own->vertices[0]).front()).modulus;
   const double depth = std::min(indentation(t, tool), tool.radius),
                force = 4.0 / 3.0 * modulus * std::sqrt(tool.radius * depth) * depth;

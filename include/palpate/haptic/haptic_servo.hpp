@@ -23,7 +23,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 namespace detail {
 
 struct Hand;
+struct SharedTools;
 class TouchedTissue;
+const SharedTools& shared_tools() noexcept;
 
 }  // namespace detail
 
@@ -45,13 +47,14 @@ class HapticServo {
   /// than a metre, if the tissue refuses such (AdmissionPolicy::units): otherwise it is noted. Allocates everything
   /// that a tick needs.
   template <class T>
-  requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
+  requires(!std::same_as<std::remove_cv_t<T>, TissueGroup> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
-      : HapticServo(TissueGroup(tissue), tools, options, energy) {}
+      : HapticServo(TissueView(tissue), tools, options, energy) {}
   HapticServo(const TissueGroup& tissues, const ToolList& tools, const ServoOptions& options = {},
-              const Energy& energy = {});
+              const Energy& energy = {})
+      : HapticServo(tissues.members(), tools, options, energy, &detail::shared_tools()) {}
   template <class T>
-  requires(!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueGroup>)
+  requires(!std::is_lvalue_reference_v<T> && TissueModel<T>)
       HapticServo(T&&, const ToolList&, const ServoOptions& = {}, const Energy& = {})
   = delete;
   ~HapticServo();
@@ -111,6 +114,14 @@ class HapticServo {
 
  private:
   friend class HapticSession;
+  using Members = std::span<const GroupMember>;
+  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options, const Energy& energy)
+      : HapticServo(GroupMember{tissue}, tools, options, energy) {}
+  HapticServo(const GroupMember& member, const ToolList& tools, const ServoOptions& options, const Energy& energy)
+      : HapticServo(Members(&member, 1), tools, options, energy, nullptr) {}
+  HapticServo(Members members, const ToolList& tools, const ServoOptions& options, const Energy& energy,
+              const detail::SharedTools* shared);
+
   void check_units();
   void check_blades() const;
   detail::Hand make_hand(std::size_t i, const ServoOptions& options, const Energy& energy);
@@ -124,6 +135,7 @@ class HapticServo {
 
   ToolList tools_;  // owns the shapes of convex tools
   std::vector<detail::TouchedTissue> tissues_;
+  const detail::SharedTools* shared_;  // null for one tissue
   std::vector<std::string> notes_;
   std::vector<GatedForce> forces_;
   std::vector<detail::Hand> hands_;  // refer to forces

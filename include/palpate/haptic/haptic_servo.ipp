@@ -53,11 +53,12 @@ inline std::vector<std::string> notes_of(std::span<const GroupMember> members) {
 
 }  // namespace detail
 
-PALPATE_INLINE HapticServo::HapticServo(const TissueGroup& tissues, const ToolList& tools, const ServoOptions& options,
-                                        const Energy& energy)
+PALPATE_INLINE HapticServo::HapticServo(Members members, const ToolList& tools, const ServoOptions& options,
+                                        const Energy& energy, const detail::SharedTools* shared)
     : tools_(tools),
-      tissues_(detail::touched_tissues(tissues.members(), tools_, options)),
-      notes_(detail::notes_of(tissues.members())),
+      tissues_(detail::touched_tissues(members, tools_, options)),
+      shared_(members.size() > 1 ? shared : nullptr),
+      notes_(detail::notes_of(members)),
       forces_(tools.size()),
       stale_tissue_after_(options.stale_tissue_after),
       force_tolerance_(options.contact.force_tolerance),
@@ -113,10 +114,10 @@ PALPATE_INLINE void HapticServo::check_units() {
 
 /// Throws unsupported for a blade and no tissue that can be cut.
 PALPATE_INLINE void HapticServo::check_blades() const {
+  for (const detail::TouchedTissue& tissue : tissues_)
+    if (tissue.view().can_be_cut()) return;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (std::get_if<BladeTool>(&tools_[i]) == nullptr ||
-        std::ranges::any_of(tissues_, [](const auto& tissue) { return tissue.view().can_be_cut(); }))
-      continue;
+    if (std::get_if<BladeTool>(&tools_[i]) == nullptr) continue;
     SetupProblem problem;
     problem.kind = SetupErrorKind::unsupported;
     problem.what = "this tissue cannot be cut: it has no try_cut(BladeSweep)";
@@ -195,15 +196,14 @@ PALPATE_INLINE void HapticServo::follow_parameters() noexcept {
 }
 
 PALPATE_INLINE void HapticServo::receive(std::span<const ToolState> states) noexcept {
-  if (tissues_.size() > 1) detail::SharedTools::begin_tick(tissues_);
+  if (shared_ != nullptr) shared_->begin_tick(tissues_);
   for (detail::Hand& hand : hands_) {
     const std::size_t i = hand.number;
     const ToolState state = i < states.size() ? states[i] : detail::unreadable();
-    if (tissues_.size() == 1) {
+    if (shared_ == nullptr) {
       tissues_.front().receive(i, state);
     } else {
-      for (detail::TouchedTissue& tissue : tissues_)
-        tissue.receive(i, detail::SharedTools::moved(state, tissue.touch(i)));
+      for (detail::TouchedTissue& tissue : tissues_) tissue.receive(i, shared_->moved(state, tissue.touch(i)));
     }
     const detail::Touch& touch = tissues_.front().touch(i);
     if (hand.tank && !touch.is_blade)
@@ -212,22 +212,20 @@ PALPATE_INLINE void HapticServo::receive(std::span<const ToolState> states) noex
 }
 
 PALPATE_INLINE void HapticServo::solve() noexcept {
-  if (tissues_.size() == 1) return tissues_.front().solve();
-  detail::SharedTools::solve(tissues_, force_tolerance_);
+  if (shared_ == nullptr) return tissues_.front().solve();
+  shared_->solve(tissues_, force_tolerance_);
 }
 
 /// Puts tools that have lost a surface back on it.
 PALPATE_INLINE void HapticServo::recover() noexcept {
-  const auto any = [this](auto recovers) {
-    bool is_any = false;
-    for (detail::TouchedTissue& tissue : tissues_)
-      is_any = recovers(detail::ToolRecovery(tissue.view(), tissue.problem()), tissue.touches()) || is_any;
-    return is_any;
-  };
-  if (any([](const auto& recovery, auto touches) { return recovery.sweep_lost_tools(touches); })) solve();
-  if (any([](const auto& recovery, auto touches) { return recovery.place_lost_tools(touches); })) solve();
+  bool swept = false, placed = false;
+  for (detail::TouchedTissue& tissue : tissues_) swept = tissue.recovery().sweep_lost_tools(tissue.touches()) || swept;
+  if (swept) solve();
   for (detail::TouchedTissue& tissue : tissues_)
-    for (detail::Touch& touch : tissue.touches()) detail::ToolRecovery(tissue.view(), tissue.problem()).recover(touch);
+    placed = tissue.recovery().place_lost_tools(tissue.touches()) || placed;
+  if (placed) solve();
+  for (detail::TouchedTissue& tissue : tissues_)
+    for (detail::Touch& touch : tissue.touches()) tissue.recovery().recover(touch);
 }
 
 /// The error of the force of all tissues that press a tool: bounds add up, expected errors count as far as they are

@@ -33,24 +33,25 @@ class HapticSession {
   template <HapticDevice D, class T>
   requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
       HapticSession(D& device, T& tissue, const ToolList& tool, const ServoOptions& options = {})
-      : HapticSession(device, TissueGroup(tissue), tool, options) {}
+      : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, TissueView(tissue), tool, options) {
+  }
   template <HapticDevice D>
   HapticSession(D& device, const TissueGroup& tissues, const ToolList& tool, const ServoOptions& options = {})
-      : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, tissues, tool, options) {}
+      : HapticSession(std::vector<detail::LoopDevice>{detail::loop_device(device)}, tissues.members(), tool, options,
+                      &detail::shared_tools()) {}
   /// Several devices of any types: std::tie(left, right).
   template <HapticDevice... D, class T>
   requires(!std::same_as<std::remove_cv_t<T>, TissueGroup>)
       HapticSession(const std::tuple<D&...>& devices, T& tissue, const ToolList& tools,
                     const ServoOptions& options = {})
-      : HapticSession(devices, TissueGroup(tissue), tools, options) {}
+      : HapticSession(detail::loop_devices(devices), TissueView(tissue), tools, options) {}
   template <HapticDevice... D>
   HapticSession(const std::tuple<D&...>& devices, const TissueGroup& tissues, const ToolList& tools,
                 const ServoOptions& options = {})
-      : HapticSession(detail::loop_devices(devices), tissues, tools, options) {}
+      : HapticSession(detail::loop_devices(devices), tissues.members(), tools, options, &detail::shared_tools()) {}
   /// A temporary device or tissue.
   template <class D, class T>
-  requires((!std::is_lvalue_reference_v<D> && HapticDevice<D>) ||
-           (!std::is_lvalue_reference_v<T> && !std::same_as<std::remove_cv_t<T>, TissueGroup>))
+  requires((!std::is_lvalue_reference_v<D> && HapticDevice<D>) || (!std::is_lvalue_reference_v<T> && TissueModel<T>))
       HapticSession(D&&, T&&, const ToolList&, const ServoOptions& = {})
   = delete;
   HapticSession(const HapticSession&) = delete;
@@ -86,8 +87,13 @@ class HapticSession {
   void set_coupling_stiffness(double stiffness, std::size_t tool = 0);
 
  private:
-  HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues, const ToolList& tools,
-                const ServoOptions& options);
+  using Devices = std::vector<detail::LoopDevice>;
+  HapticSession(const Devices& devices, const TissueView& tissue, const ToolList& tools, const ServoOptions& options)
+      : HapticSession(devices, GroupMember{tissue}, tools, options) {}
+  HapticSession(const Devices& devices, const GroupMember& member, const ToolList& tools, const ServoOptions& options)
+      : HapticSession(devices, HapticServo::Members(&member, 1), tools, options, nullptr) {}
+  HapticSession(const Devices& devices, HapticServo::Members members, const ToolList& tools,
+                const ServoOptions& options, const detail::SharedTools* shared);
 
   HapticServo servo_;
   std::vector<DeviceLimits> limits_;  // of the devices

@@ -92,9 +92,9 @@ PALPATE_INLINE ServoOptions servo_options(const std::vector<DeviceLimits>& devic
   return o;
 }
 
-PALPATE_INLINE HapticSession::HapticSession(const std::vector<detail::LoopDevice>& devices, const TissueGroup& tissues,
-                                            const ToolList& tools, const ServoOptions& options)
-    : servo_(tissues, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}),
+PALPATE_INLINE HapticSession::HapticSession(const Devices& devices, HapticServo::Members members, const ToolList& tools,
+                                            const ServoOptions& options, const detail::SharedTools* shared)
+    : servo_(members, tools, servo_options(detail::limits_of(devices), tools.size(), options), {}, shared),
       limits_(detail::limits_of(devices)),
       rate_(options.rate.value_or(detail::rate_of(devices))),
       loop_(std::make_unique<detail::HapticLoop>(devices, detail::session_servo(servo_), rate_)) {}

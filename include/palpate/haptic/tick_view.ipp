@@ -33,7 +33,9 @@ PALPATE_INLINE double TickView::indentation(std::size_t tool) const noexcept {
   return pressed(tool).problem().indentation(tool, pressed(tool).touch(tool).tool);
 }
 PALPATE_INLINE bool TickView::is_holding(std::size_t tool) const noexcept {
-  return std::ranges::any_of(tissues_, [tool](const auto& tissue) { return tissue.problem().is_holding(tool); });
+  bool holds = false;
+  for (const detail::TouchedTissue& tissue : tissues_) holds = holds || tissue.problem().is_holding(tool);
+  return holds;
 }
 PALPATE_INLINE const BladeCut* TickView::blade(std::size_t tool, std::size_t tissue) const noexcept {
   const auto& blade = tissues_[tissue].touch(tool).blade;

@@ -11,15 +11,16 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 PALPATE_INLINE const Group* GroupTable::find(std::string_view name) const noexcept {
-  const auto it = std::ranges::find(groups_, name, &Group::name);
-  return it == groups_.end() ? nullptr : &*it;
+  for (const Group& group : groups_)
+    if (group.name == name) return &group;
+  return nullptr;
 }
 
 PALPATE_INLINE Group& GroupTable::get_or_add(std::string_view name, int dimension) {
-  const auto it = std::ranges::find(groups_, name, &Group::name);
-  if (it != groups_.end()) {
-    it->dimension = std::max(it->dimension, dimension);
-    return *it;
+  for (Group& group : groups_) {
+    if (group.name != name) continue;
+    group.dimension = std::max(group.dimension, dimension);
+    return group;
   }
   groups_.push_back({std::string(name), dimension, {}, {}, {}});
   return groups_.back();

@@ -136,10 +136,10 @@ PALPATE_INLINE std::string Scene::loads_in_words() const {
   count(point_loads_.size(), "point load", "point loads");
   count(body_loads_.size(), "body load", "body loads");
   count(initial_strains_.size(), "initial strain", "initial strains");
-  const auto moves = [](const Prescribed& p) {
-    return std::ranges::any_of(p.values, [](const auto& v) { return v.value_or(0.0) != 0.0; });
-  };
-  if (std::ranges::any_of(prescribed_, moves)) add("prescribed displacements");
+  bool moves = false;
+  for (const Prescribed& p : prescribed_)
+    for (const auto& value : p.values) moves = moves || value.value_or(0.0) != 0.0;
+  if (moves) add("prescribed displacements");
   return words;
 }
 

@@ -21,8 +21,9 @@ PALPATE_INLINE std::string selection_name(const Selection& s) {
 }
 
 inline const Group* find_group(const MeshRef& mesh, const std::string& name) noexcept {
-  const auto it = std::ranges::find(mesh.groups, name, &Group::name);
-  return it == mesh.groups.end() ? nullptr : &*it;
+  for (const Group& group : mesh.groups)
+    if (group.name == name) return &group;
+  return nullptr;
 }
 
 /// The nodes of the group, surface or region of that name, in any order.

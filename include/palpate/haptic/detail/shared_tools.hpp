@@ -13,19 +13,19 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// moved by c g (Touch::shift), and rotated by the torques in the same way. Each tissue is solved for the newest forces
 /// of the others, until these change by less than the tolerance of a contact problem. The matrix is symmetric and
 /// positive definite, so that this converges. A soft coupling on stiff tissues takes many rounds: the forces on the
-/// first tissue are extrapolated (Irons and Tuck 1969). Nothing allocates.
-class SharedTools {
- public:
-  static constexpr int most_rounds = 12;
-
+/// first tissue are extrapolated (Irons and Tuck 1969). Nothing allocates. A table, so that only programs with a
+/// TissueGroup contain the code.
+struct SharedTools {
   /// Moves the targets by the forces of the last tick. Before the states of a tick are received.
-  static void begin_tick(std::span<TouchedTissue> tissues) noexcept;
+  void (*begin_tick)(std::span<TouchedTissue>) noexcept;
   /// A state for a tissue: with the target moved.
-  static ToolState moved(const ToolState& state, const Touch& touch) noexcept;
-  /// Solves the contact of all tissues. Where forces would change by more than 5 % in another round, the tissues report
-  /// solver_not_converged.
-  static void solve(std::span<TouchedTissue> tissues, double tolerance) noexcept;
+  ToolState (*moved)(const ToolState&, const Touch&) noexcept;
+  /// Solves the contact of all tissues, up to a relative change of the forces. Where these would change by more than 5
+  /// % in another round, the tissues report solver_not_converged.
+  void (*solve)(std::span<TouchedTissue>, double tolerance) noexcept;
 };
+
+const SharedTools& shared_tools() noexcept;
 
 }}}  // namespace palpate::detail
 

@@ -35,12 +35,12 @@ inline void set_shift(const OtherLoads& loads, Touch& touch) noexcept {
   touch.rotation = rotation;
 }
 
-PALPATE_INLINE void SharedTools::begin_tick(std::span<TouchedTissue> tissues) noexcept {
+inline void begin_shared(std::span<TouchedTissue> tissues) noexcept {
   for (std::size_t k = 0; k < tissues.size(); ++k)
     for (Touch& touch : tissues[k].touches()) set_shift(OtherLoads(tissues, k, touch.number), touch);
 }
 
-PALPATE_INLINE ToolState SharedTools::moved(const ToolState& state, const Touch& touch) noexcept {
+inline ToolState moved_state(const ToolState& state, const Touch& touch) noexcept {
   ToolState s = state;
   s.position += touch.shift;
   const double angle = touch.rotation.norm();
@@ -61,7 +61,7 @@ inline void move_target(const TouchedTissue& tissue, const Vector3& shift, const
   const Vector3 path = to_model * (shift - touch.shift);
   touch.tool.target += path;
   touch.input.move(path);
-  if (touch.rotation != rotation)
+  if ((rotation - touch.rotation).squaredNorm() > 0.0)
     touch.tool.target_rotation = rotation_by(to_model * (rotation - touch.rotation)) * touch.tool.target_rotation;
   touch.shift = shift;
   touch.rotation = rotation;
@@ -113,8 +113,9 @@ inline double change_of_targets(std::span<const TouchedTissue> tissues, std::siz
   return largest;
 }
 
-PALPATE_INLINE void SharedTools::solve(std::span<TouchedTissue> tissues, double tolerance) noexcept {
+inline void solve_shared(std::span<TouchedTissue> tissues, double tolerance) noexcept {
   constexpr double flagged = 0.05;
+  constexpr int most_rounds = 12;
   std::array<Vector3, maximum_tools> room{};
   const std::span<Vector3> changes(room.data(), tissues.front().touches().size());
   for (TouchedTissue& tissue : tissues) tissue.begin();
@@ -144,6 +145,11 @@ PALPATE_INLINE void SharedTools::solve(std::span<TouchedTissue> tissues, double 
     tissue.end();
     if (left > flagged) tissue.set_unsolved();
   }
+}
+
+PALPATE_INLINE const SharedTools& shared_tools() noexcept {
+  static constexpr SharedTools functions{begin_shared, moved_state, solve_shared};
+  return functions;
 }
 
 }}}  // namespace palpate::detail

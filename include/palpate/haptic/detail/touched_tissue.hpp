@@ -20,6 +20,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
+class ToolRecovery;
+
 /// A tool at one tissue. The contact tool belongs to an array, since the contact problem takes those of all tools.
 struct Touch {
   std::size_t number;  // of the tool
@@ -66,6 +68,8 @@ class TouchedTissue {
   void iterate() noexcept { solved_ |= problem_->iterate(view_, tools_); }
   void end() noexcept { solved_ |= problem_->end(view_, tools_); }
   void set_unsolved() noexcept { solved_.set(StatusFlag::solver_not_converged); }
+  /// What it does with tools that have lost the tissue; of the moment.
+  ToolRecovery recovery() noexcept;
   /// Updates the error of a tool's force, and its correction.
   void estimate_error(std::size_t tool, bool correct) noexcept;
   /// What is to be reported of a tool at the end of a tick, other than `solved` and `news`.

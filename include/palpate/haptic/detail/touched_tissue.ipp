@@ -99,6 +99,10 @@ PALPATE_INLINE void TouchedTissue::note_updates() noexcept {
   for (Touch& touch : touches_) touch.input.note_tissue(has_news);
 }
 
+PALPATE_INLINE ToolRecovery TouchedTissue::recovery() noexcept {
+  return {view_, *problem_};
+}
+
 /// The expected error is subtracted as far as its bound is small: where the tissue deforms otherwise than it was
 /// measured (a pinch of a part that a single sphere bends) the bound is as large as the force, and the expected error
 /// wrong. The bound stays: it was measured for the force without correction, and the expected error may be too large.
@@ -121,7 +125,7 @@ PALPATE_INLINE Status TouchedTissue::status_of(std::size_t tool, double stale_af
   Status status = touch.input.status() | problem_->status_of(tool, touch.tool);
   if (touch.blade) status |= touch.blade->status();
   if (view_.has_updates() && touch.input.is_stalled(stale_after)) status.set(StatusFlag::stalled_tissue);
-  touch.lost_contact = !touch.is_blade && ToolRecovery(view_, *problem_).has_lost_contact(touch);
+  touch.lost_contact = !touch.is_blade && recovery().has_lost_contact(touch);
   if (touch.lost_contact) status.set(StatusFlag::lost_contact);
   const ForceErrorParts& parts = touch.error.parts;
   const double large = ContactProblem::flagged_error * problem_->scale_of_force(tool, touch.error.force);

@@ -201,9 +201,11 @@ PALPATE_INLINE std::vector<FreeRigidModes> free_rigid_modes(std::span<const Vect
 PALPATE_INLINE void require_constrained(std::span<const Vector3> positions, std::span<const NodeId> component,
                                         std::span<const std::uint8_t> constrained, const Vector3& origin) {
   const std::vector<FreeRigidModes> all = free_rigid_modes(positions, component, constrained, origin);
-  const auto free = std::ranges::count_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  std::size_t free = 0, first_free = all.size();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].count() > 0) ++free, first_free = std::min(first_free, i);
   if (free == 0) return;
-  const FreeRigidModes& first = *std::ranges::find_if(all, [](const FreeRigidModes& m) { return m.count() > 0; });
+  const FreeRigidModes& first = all[first_free];
   SetupProblem p;
   p.kind = SetupErrorKind::unconstrained;
   p.what = "component " + std::to_string(first.component) + " of " + std::to_string(all.size()) + " has " +
