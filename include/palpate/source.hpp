@@ -59,6 +59,7 @@
 #include <palpate/haptic/haptic_loop.ipp>
 #include <palpate/haptic/haptic_servo.ipp>
 #include <palpate/haptic/haptic_session.ipp>
+#include <palpate/haptic/jaws.ipp>
 #include <palpate/haptic/loop_report.ipp>
 #include <palpate/haptic/servo_options.ipp>
 #include <palpate/haptic/servo_snapshot.ipp>

@@ -12,6 +12,8 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 /// The rotation by |v| radians about v (Rodrigues' formula); the identity for v = 0.
 Matrix3 rotation_by(const Vector3& v) noexcept;
+/// The same rotation as a unit quaternion.
+Quaternion<double> quaternion_by(const Vector3& v) noexcept;
 /// The inverse of rotation_by: v with |v| <= pi, for a rotation matrix.
 Vector3 rotation_vector(const Matrix3& rotation) noexcept;
 /// The rotation of a quaternion of any length.

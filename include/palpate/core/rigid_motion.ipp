@@ -47,6 +47,11 @@ PALPATE_INLINE Quaternion<double> quaternion_of(const Matrix3& rotation) noexcep
   return detail::normalized(Quaternion<double>{w, axis[0], axis[1], axis[2]});
 }
 
+PALPATE_INLINE Quaternion<double> quaternion_by(const Vector3& v) noexcept {
+  const double angle = v.norm(), scale = angle > 0.0 ? std::sin(0.5 * angle) / angle : 0.5;
+  return {std::cos(0.5 * angle), scale * v[0], scale * v[1], scale * v[2]};
+}
+
 PALPATE_INLINE Vector3 rotation_vector(const Matrix3& rotation) noexcept {
   const Quaternion<double> q = quaternion_of(rotation);
   const Vector3 axis(q.x, q.y, q.z);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
@@ -43,14 +42,10 @@ inline void begin_shared(std::span<TouchedTissue> tissues) noexcept {
 inline ToolState moved_state(const ToolState& state, const Touch& touch) noexcept {
   ToolState s = state;
   s.position += touch.shift;
-  const double angle = touch.rotation.norm();
-  if (!(angle > 0.0)) return s;
-  const double w = std::cos(0.5 * angle);
-  const Vector3 v = (std::sin(0.5 * angle) / angle) * touch.rotation;
-  const auto& q = state.orientation;
-  const Vector3 own(q[1], q[2], q[3]);
-  const Vector3 product = w * own + q[0] * v + cross(v, own);
-  s.orientation = {w * q[0] - v.dot(own), product[0], product[1], product[2]};
+  if (!(touch.rotation.squaredNorm() > 0.0)) return s;
+  const auto& [w, x, y, z] = state.orientation;
+  const Quaternion<double> q = quaternion_by(touch.rotation) * Quaternion<double>{w, x, y, z};
+  s.orientation = {q.w, q.x, q.y, q.z};
   return s;
 }
 

@@ -1,0 +1,94 @@
+// Definitions of jaws.hpp.
+#pragma once
+
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/jaws.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+PALPATE_INLINE void JawJoint::require_valid() const {
+  const auto is_positive = [](double v) { return v > 0.0 && v < infinity; };
+  if (!(all_finite(pivot) && all_finite(axis) && axis.norm() > 0.0))
+    raise(SetupErrorKind::bad_argument, "the joint of jaws has no axis or no finite pivot",
+          "Give JawJoint::axis a length above zero");
+  if (!(is_positive(widest) && widest < 3.0))
+    raise(SetupErrorKind::bad_argument, "the widest opening of jaws is " + number(widest) + " rad",
+          "It must be above 0 and below 3 rad");
+  if (!(is_positive(grip_force) && is_positive(grip_torque) && is_positive(stiffness)))
+    raise(SetupErrorKind::bad_argument, "force, torque and stiffness of a joint must be positive and finite");
+}
+
+PALPATE_INLINE double ButtonOpening::operator()(const ToolState& state) noexcept {
+  constexpr double longest = 0.05;  // [s] between two states
+  const double seconds = std::clamp(state.time - time_, 0.0, longest);
+  time_ = state.time;
+  if (!state.valid || !(seconds > 0.0)) return opening_;
+  const double step = seconds * speed_;
+  opening_ = std::clamp(opening_ + ((state.buttons & buttons_) != 0 ? -step : step), 0.0, widest_);
+  return opening_;
+}
+
+namespace detail {
+
+inline JawJoint checked(JawJoint joint) {
+  joint.require_valid();
+  joint.axis /= joint.axis.norm();
+  return joint;
+}
+
+PALPATE_INLINE JawPair::JawPair(const JawJoint& joint, const DeviceLimits& device, double rate)
+    : joint_(checked(joint)), device_(device), gate_(ForceLimits::from(device, rate)), opening_(joint.widest) {}
+
+PALPATE_INLINE void JawPair::take(const ToolState& state, double opening) noexcept {
+  state_ = state;
+  if (opening >= 0.0) opening_ = std::min(opening, joint_.widest);  // the last one in place of NaN
+}
+
+PALPATE_INLINE ToolState JawPair::state(double side) const noexcept {
+  ToolState s = state_;
+  const auto& [w, x, y, z] = state_.orientation;
+  const Quaternion<double> handle{w, x, y, z};
+  const Quaternion<double> q = handle * quaternion_by(Vector3(0.5 * side * opening_ * joint_.axis));
+  s.position += rotation_matrix(handle) * joint_.pivot;
+  s.velocity.setConstant(std::numeric_limits<double>::quiet_NaN());
+  s.orientation = {q.w, q.x, q.y, q.z};
+  return s;
+}
+
+PALPATE_INLINE DeviceLimits JawPair::limits() const noexcept {
+  DeviceLimits jaw = device_;
+  jaw.stiffness = 0.5 * device_.stiffness;
+  jaw.peak_force = jaw.continuous_force = joint_.grip_force;
+  jaw.peak_torque = joint_.grip_torque;
+  jaw.rotational_stiffness = joint_.stiffness;
+  return jaw;
+}
+
+/// Torques of the jaws are about the pivot.
+PALPATE_INLINE GatedForce JawPair::sum() noexcept {
+  const auto& [w, x, y, z] = state_.orientation;
+  const Matrix3 handle = rotation_matrix({w, x, y, z});
+  const Vector3 force = force_[0].force() + force_[1].force();
+  const Vector3 torque = force_[0].torque() + force_[1].torque() + cross(handle * joint_.pivot, force);
+  const double apart = 0.5 * (handle * joint_.axis).dot(force_[0].torque() - force_[1].torque());
+  joint_torque_ = std::isfinite(apart) ? apart : 0.0;
+  const double now = std::isfinite(state_.now) ? state_.now : state_.time;
+  GatedForce sum = gate_.apply(force, torque, now, state_.time, state_.valid, false);
+  sum.status |= force_[0].status | force_[1].status;
+  sum.error = force_[0].error.bound < force_[1].error.bound ? force_[1].error : force_[0].error;
+  return sum;
+}
+
+PALPATE_INLINE void JawPair::reset() noexcept {
+  gate_.reset();
+  force_ = {};
+  joint_torque_ = 0.0;
+}
+
+}  // namespace detail
+
+}}  // namespace palpate
