@@ -39,7 +39,10 @@ class ContactProblem {
 
   // The parts of `solve`, for tools that also touch other tissues: their targets may be moved between two `iterate`.
   Status begin(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
-  Status iterate(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
+  Status iterate(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
+    return iterate(tissue, tools, parameters_.maximum_iterations);
+  }
+  Status iterate(const TissueView& tissue, std::span<ContactTool> tools, int linearisations) noexcept;
   Status end(const TissueView& tissue, std::span<ContactTool> tools) noexcept;
 
   /// Continues on the surface of the same body after a cut, where vertices keep their numbers and there may be more.

@@ -202,12 +202,13 @@ PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<
   return status;
 }
 
-PALPATE_INLINE Status ContactProblem::iterate(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
+PALPATE_INLINE Status ContactProblem::iterate(const TissueView& tissue, std::span<ContactTool> tools,
+                                              int linearisations) noexcept {
   Status status;
   rounds_left_ = maximum_rounds;
   double change = 0.0, before = 0.0;
   rest_of_change_ = 0.0;
-  for (int iteration = 0; iteration < parameters_.maximum_iterations; ++iteration) {
+  for (int iteration = 0; iteration < linearisations; ++iteration) {
     if (rounds_left_ <= 0) {
       status.set(StatusFlag::solver_not_converged);
       break;

@@ -31,10 +31,10 @@ const SharedTools& shared_tools() noexcept;
 
 /// Contact state of one session, and a force gate per tool. `tick` computes the force in the tick that received the
 /// pose and passes it through the gate; no other path leads to the device. A TissueGroup in place of a tissue: the
-/// force is that of all its tissues together, and status flags are those of the tissues that a tool touches. Refers to
-/// the tissues, which must outlive it; neither copied nor moved. An EnergyTank given as last argument is used in place
-/// of those of ServoOptions::limit_energy, for other EnergyLimits. One class for tissues of all types: it refers to its
-/// tissue through TissueView. With a HapticDevice, HapticSession is simpler.
+/// force is that of all its tissues together, and status flags are those of the tissues that a tool presses, or of all
+/// where it presses none. Refers to the tissues, which must outlive it; neither copied nor moved. An EnergyTank given
+/// as last argument is used in place of those of ServoOptions::limit_energy, for other EnergyLimits. One class for
+/// tissues of all types: it refers to its tissues through TissueView. With a HapticDevice, HapticSession is simpler.
 class HapticServo {
  public:
   static constexpr std::size_t max_tools = maximum_tools;
@@ -50,6 +50,9 @@ class HapticServo {
   requires(!std::same_as<std::remove_cv_t<T>, TissueGroup> && !std::same_as<std::remove_cv_t<T>, TissueView>)
       HapticServo(T& tissue, const ToolList& tools, const ServoOptions& options = {}, const Energy& energy = {})
       : HapticServo(TissueView(tissue), tools, options, energy) {}
+  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options = {},
+              const Energy& energy = {})
+      : HapticServo(GroupMember{tissue}, tools, options, energy) {}
   HapticServo(const TissueGroup& tissues, const ToolList& tools, const ServoOptions& options = {},
               const Energy& energy = {})
       : HapticServo(tissues.members(), tools, options, energy, &detail::shared_tools()) {}
@@ -99,6 +102,7 @@ class HapticServo {
   TickView tick_view() const& noexcept;
   TickView tick_view() const&& = delete;
 
+  std::size_t tissue_count() const noexcept;
   /// The facets of a tissue that are too long for the smallest tool, on the surface at construction.
   const CoarseFacetReport& coarse_facets(std::size_t tissue = 0) const noexcept;
   /// What the set-up of the tissue reported, and which tools look as if they were given in millimetres.
@@ -115,8 +119,6 @@ class HapticServo {
  private:
   friend class HapticSession;
   using Members = std::span<const GroupMember>;
-  HapticServo(const TissueView& tissue, const ToolList& tools, const ServoOptions& options, const Energy& energy)
-      : HapticServo(GroupMember{tissue}, tools, options, energy) {}
   HapticServo(const GroupMember& member, const ToolList& tools, const ServoOptions& options, const Energy& energy)
       : HapticServo(Members(&member, 1), tools, options, energy, nullptr) {}
   HapticServo(Members members, const ToolList& tools, const ServoOptions& options, const Energy& energy,

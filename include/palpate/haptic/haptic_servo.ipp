@@ -80,6 +80,9 @@ PALPATE_INLINE HapticServo::HapticServo(Members members, const ToolList& tools, 
 
 PALPATE_INLINE HapticServo::~HapticServo() = default;
 
+PALPATE_INLINE std::size_t HapticServo::tissue_count() const noexcept {
+  return tissues_.size();
+}
 PALPATE_INLINE TickView HapticServo::tick_view() const& noexcept {
   return {tissues_, hands_.data(), newest_};
 }
@@ -131,6 +134,8 @@ PALPATE_INLINE void HapticServo::check_blades() const {
 PALPATE_INLINE detail::Hand HapticServo::make_hand(std::size_t i, const ServoOptions& options, const Energy& energy) {
   detail::Hand hand{i, forces_[i], ForceGate(options.limits(i)),
                     detail::RampedValue(1.0 / detail::coupling_stiffness_of(i, options))};
+  for (std::size_t k = tissues_.size(); k-- > 0;)
+    if (tissues_[k].touch(i).blade || !tissues_[k].touch(i).is_blade) hand.tissue = hand.first_tissue = k;
   hand.tank = energy;
   if (!energy && options.limit_energy) hand.tank.emplace(EnergyLimits::from(options.device_of(i)));
   return hand;
@@ -196,15 +201,11 @@ PALPATE_INLINE void HapticServo::follow_parameters() noexcept {
 }
 
 PALPATE_INLINE void HapticServo::receive(std::span<const ToolState> states) noexcept {
-  if (shared_ != nullptr) shared_->begin_tick(tissues_);
   for (detail::Hand& hand : hands_) {
     const std::size_t i = hand.number;
     const ToolState state = i < states.size() ? states[i] : detail::unreadable();
-    if (shared_ == nullptr) {
-      tissues_.front().receive(i, state);
-    } else {
-      for (detail::TouchedTissue& tissue : tissues_) tissue.receive(i, shared_->moved(state, tissue.touch(i)));
-    }
+    for (std::size_t k = 0; k < tissues_.size(); ++k)
+      tissues_[k].receive(i, shared_ == nullptr ? state : shared_->moved(tissues_, k, i, state));
     const detail::Touch& touch = tissues_.front().touch(i);
     if (hand.tank && !touch.is_blade)
       hand.tank->rotated(hand.gate.last_torque().dot(touch.input.rotation() - touch.rotation_change));
@@ -254,13 +255,15 @@ PALPATE_INLINE void HapticServo::add_errors(detail::Hand& hand, const Vector3& f
 }
 
 /// Passes the force of all tissues through the energy tank and the gate; the tank then receives the gate's output. A
-/// tool has the flags of the tissues that press it, and of all of them those of its input and of the solution.
+/// tool has the flags of the tissues that press it, or of all where none does, and of all of them those of its input
+/// and of the solution.
 PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
   const std::size_t i = hand.number;
   const detail::ToolInput& input = tissues_.front().touch(i).input;
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
   double most = -1.0, time = infinity;
-  bool is_readable = true, has_restarted = false;
+  bool is_readable = true, has_restarted = false, is_pressed = false;
+  for (const detail::TouchedTissue& tissue : tissues_) is_pressed = is_pressed || tissue.touch(i).presses();
   Status status;
   for (std::size_t k = 0; k < tissues_.size(); ++k) {
     detail::TouchedTissue& tissue = tissues_[k];
@@ -269,18 +272,20 @@ PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
     const Vector3 own = touch.correction * tissue.force_on(i);
     force += own;
     if (touch.input.rotates()) torque += touch.correction * tissue.torque_on(i);
-    if (own.norm() > most) most = own.norm(), hand.tissue = k;
+    if (own.norm() > most && (!touch.is_blade || touch.blade)) most = own.norm(), hand.tissue = k;
     is_readable = is_readable && touch.input.readable();
     has_restarted = has_restarted || touch.input.restarted();
     status |= tissue.solved();
     const Status of_tissue = tissue.news() | tissue.status_of(i, stale_tissue_after_);
-    if (tissues_.size() > 1 && !touch.presses()) {
+    if (is_pressed && !touch.presses()) {
       status |= touch.input.status();
+      if (touch.blade) status |= touch.blade->status();
       if (touch.lost_contact) status.set(StatusFlag::lost_contact);
       continue;
     }
     status |= of_tissue;
-    if (tissue.view().has_updates()) time = std::min(time, touch.input.stamp(stale_tissue_after_));
+    if (tissue.view().has_updates() && (touch.presses() || tissues_.size() == 1))
+      time = std::min(time, touch.input.stamp(stale_tissue_after_));
   }
   time = std::min(time, input.time());
   add_errors(hand, force);

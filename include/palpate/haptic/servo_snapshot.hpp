@@ -46,24 +46,29 @@ struct ServoSnapshot {
   explicit ServoSnapshot(int capacity, std::size_t tissues = 1);
   ServoSnapshot() : ServoSnapshot(default_contact_capacity) {}
 
-  /// Forces on the vertices of a tissue.
+  std::size_t tissue_count() const noexcept { return force_end.size(); }
+  /// Forces on the vertices of a tissue, whose number is below tissue_count().
   std::span<const VertexForce> vertex_forces(std::size_t tissue = 0) const noexcept {
     const std::size_t first = tissue > 0 ? force_end[tissue - 1] : 0;
     return {forces.data() + first, force_end[tissue] - first};
   }
   std::span<const ToolContact> tool_contacts() const noexcept { return {contacts.data(), contact_count}; }
-  /// The forces on the vertices of the first tissue, so that functions of a model that take these also take a snapshot.
+  /// The forces on the vertices of a single tissue, so that functions of a model that take these also take a snapshot.
+  /// None where there are several: which ones are meant is not known.
   operator std::span<const VertexForce>() const noexcept {  // NOLINT(google-explicit-constructor)
-    return vertex_forces();
+    return tissue_count() == 1 ? vertex_forces() : std::span<const VertexForce>();
   }
-  /// Force of the tissue on a tool, before the gate, world frame [N].
+  /// Force of the tissues on a tool, before the gate, world frame [N].
   Vector3 contact_force(std::size_t tool = 0) const noexcept;
 
  private:
   friend class HapticServo;
 
   /// Removes contacts and forces.
-  void clear() noexcept { contact_count = 0; }
+  void clear() noexcept {
+    contact_count = 0;
+    for (std::size_t& end : force_end) end = 0;
+  }
   /// Copies the forces and pressing contacts of a tissue from those in the frame of a model at `pose`; tissue by
   /// tissue.
   void note(std::size_t tissue, std::span<const Contact> all, std::span<const VertexForce> on_vertices,

@@ -19,13 +19,14 @@ struct Hand {
   RampedValue compliance;  // of the coupling [m/N]
   std::optional<EnergyTank> tank{};
   ForceError error{};
-  std::size_t tissue = 0;  // that presses it most
+  std::size_t tissue = 0;        // that presses it most, or else `first_tissue`
+  std::size_t first_tissue = 0;  // that it can touch
 
   void reset() noexcept {
     gate.reset();
     if (tank) tank->reset();
     error = {};
-    tissue = 0;
+    tissue = first_tissue;
   }
 };
 

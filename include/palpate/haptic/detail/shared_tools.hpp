@@ -11,17 +11,18 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// tissues has no common entries: their contacts have only the couplings of the tools in common. A coupling puts the
 /// proxy at x = target + c (f + g), with the forces f of one tissue and g of the others: for that tissue the target is
 /// moved by c g (Touch::shift), and rotated by the torques in the same way. Each tissue is solved for the newest forces
-/// of the others, until these change by less than the tolerance of a contact problem. The matrix is symmetric and
-/// positive definite, so that this converges. A soft coupling on stiff tissues takes many rounds: the forces on the
-/// first tissue are extrapolated (Irons and Tuck 1969). Nothing allocates. A table, so that only programs with a
-/// TissueGroup contain the code.
+/// of the others, until these change by less than the tolerance of a contact problem; one without force follows larger
+/// changes only, within the tick. The matrix is symmetric and positive definite, so that this converges. Rotations by
+/// the torques of several tissues are added: exact to first order. Blades have no matrix: they are moved one after the
+/// other, so that several tissues cut by one render its coupling once. A soft coupling on stiff tissues takes many
+/// rounds: the forces on the first tissue are extrapolated (Irons and Tuck 1969). Nothing allocates. A table, so that
+/// only programs with a TissueGroup contain the code.
 struct SharedTools {
-  /// Moves the targets by the forces of the last tick. Before the states of a tick are received.
-  void (*begin_tick)(std::span<TouchedTissue>) noexcept;
-  /// A state for a tissue: with the target moved.
-  ToolState (*moved)(const ToolState&, const Touch&) noexcept;
-  /// Solves the contact of all tissues, up to a relative change of the forces. Where these would change by more than 5
-  /// % in another round, the tissues report solver_not_converged.
+  /// The state of a tool for tissue number `own`: its target moved by the newest forces of the others on it.
+  ToolState (*moved)(std::span<TouchedTissue>, std::size_t own, std::size_t tool, const ToolState&) noexcept;
+  /// Solves the contact of all tissues, up to a relative change of forces and torques. Where these would change by more
+  /// than 5 % in another round, the tissues report solver_not_converged. At most 9 rounds, all but the first one with
+  /// at most two linearisations.
   void (*solve)(std::span<TouchedTissue>, double tolerance) noexcept;
 };
 

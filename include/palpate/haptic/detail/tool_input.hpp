@@ -49,6 +49,12 @@ class ToolInput {
   /// Whether that happened in this tick.
   bool is_lost() const noexcept { return readable() && known_ != Known::position; }
   void reset() noexcept;
+  /// Whether a state can be used, and is not replaced by the last one.
+  bool would_accept(const ToolState& state) const noexcept {
+    const auto& [w, x, y, z] = state.orientation;
+    const Quaternion<double> q = rotates_ ? Quaternion<double>{w, x, y, z} : Quaternion<double>{1.0, 0.0, 0.0, 0.0};
+    return state.valid && is_sound(state.position, q, state.time);
+  }
   /// The target was moved within a tick [m].
   void move(const Vector3& path) noexcept { position_ += path; }
 

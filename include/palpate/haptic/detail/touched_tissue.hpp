@@ -39,7 +39,7 @@ struct Touch {
 
   /// Whether the tissue exerts a force on it.
   bool presses() const noexcept {
-    return tool.force.squaredNorm() > 0.0 || (blade && blade->force().squaredNorm() > 0.0);
+    return !(tool.force.squaredNorm() == 0.0) || (blade && !(blade->force().squaredNorm() == 0.0));
   }
 
   void reset() noexcept;
@@ -66,6 +66,8 @@ class TouchedTissue {
   void solve() noexcept { solved_ |= problem_->solve(view_, tools_); }
   void begin() noexcept { solved_ |= problem_->begin(view_, tools_); }
   void iterate() noexcept { solved_ |= problem_->iterate(view_, tools_); }
+  /// The same with fewer linearisations, after a small change of the targets.
+  void iterate(int linearisations) noexcept { solved_ |= problem_->iterate(view_, tools_, linearisations); }
   void end() noexcept { solved_ |= problem_->end(view_, tools_); }
   void set_unsolved() noexcept { solved_.set(StatusFlag::solver_not_converged); }
   /// What it does with tools that have lost the tissue; of the moment.
@@ -88,6 +90,7 @@ class TouchedTissue {
   const ContactProblem& problem() const noexcept { return *problem_; }
   ContactProblem& problem() noexcept { return *problem_; }
   std::span<Touch> touches() noexcept { return touches_; }
+  std::span<const Touch> touches() const noexcept { return touches_; }
   Touch& touch(std::size_t tool) noexcept { return touches_[tool]; }
   const Touch& touch(std::size_t tool) const noexcept { return touches_[tool]; }
   const CoarseFacetReport& coarse_facets() const noexcept { return coarse_facets_; }

@@ -144,6 +144,7 @@ PALPATE_INLINE void TouchedTissue::reset() noexcept {
   problem_->reset();
   started_ = false;
   updates_ = 0;
+  news_ = solved_ = {};
   for (Touch& touch : touches_) touch.reset();
   release();
 }
