@@ -164,7 +164,7 @@ TEST_CASE("jaws with an impossible joint are refused", "[haptic][jaws][refused]"
 
 namespace {
 
-/// A slab of 40 x 20 x 6 mm around z = 0, held at x = 0.
+/// A slab of 40 x 20 x 6 mm around z = 0, fixed at x = 0.
 using Slab = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
 Slab make_slab() {
   return {box_tet4({40e-3, 20e-3, 6e-3}, {20, 10, 3}, BoxSplit::five_mirrored, {0.0, -10e-3, -3e-3}),

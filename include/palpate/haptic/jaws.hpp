@@ -1,4 +1,4 @@
-// Jaws of a grasper or scissors: two tools on a joint, held by one device.
+// Jaws of a grasper or scissors: two tools on a joint, for one device.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
