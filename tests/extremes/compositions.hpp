@@ -11,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -110,11 +111,11 @@ Model make_block() {
 template <class Model>
 struct Body {
   Model model;
-  std::optional<Model> second;
+  std::unique_ptr<Model> second;
 
   explicit Body(bool grouped) : model(make_block<Model>()) {
     if (!grouped) return;
-    second.emplace(make_block<Model>());
+    second.reset(new Model(make_block<Model>()));  // it cannot be moved
     second->set_pose(Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.0)));
   }
   /// Background work, and a cut of the middle of the body in tick 60, where it can be cut.

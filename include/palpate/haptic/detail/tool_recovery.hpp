@@ -3,7 +3,7 @@
 
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/tissue_view.hpp>
-#include <palpate/haptic/detail/touched_tissue.hpp>
+#include <palpate/haptic/detail/touch.hpp>
 
 #include <span>
 

@@ -1,17 +1,16 @@
 // One tissue of a servo, with its contact problem and the tools as this tissue has them.
 #pragma once
 
-#include <palpate/concepts/force_error.hpp>
 #include <palpate/concepts/haptic_device.hpp>
 #include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_problem.hpp>
-#include <palpate/contact/detail/servo_blade.hpp>
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/contact/tissue_view.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/haptic/detail/ramped_value.hpp>
-#include <palpate/haptic/detail/tool_input.hpp>
+#include <palpate/haptic/detail/tool_recovery.hpp>
+#include <palpate/haptic/detail/touch.hpp>
 #include <palpate/haptic/servo_options.hpp>
 
 #include <memory>
@@ -19,31 +18,6 @@
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
-
-class ToolRecovery;
-
-/// A tool at one tissue. The contact tool belongs to an array, since the contact problem takes those of all tools.
-struct Touch {
-  std::size_t number;  // of the tool
-  ContactTool& tool;   // in the frame of the tissue; not active if it is a blade
-  ToolInput input;
-  bool is_blade = false;
-  std::unique_ptr<ServoBlade> blade{};  // null for other tools, and where the tissue cannot be cut
-  ForceError error{};
-  double correction = 1.0;    // factor of the force: ServoOptions::corrected_force
-  bool lost_contact = false;  // in the last tick
-  // By which the forces of other tissues move the target of the tool, world frame: SharedTools.
-  Vector3 shift = Vector3::Zero();            // [m]
-  Vector3 rotation = Vector3::Zero();         // [rad]
-  Vector3 rotation_change = Vector3::Zero();  // of `rotation`, since the tick before
-
-  /// Whether the tissue exerts a force on it.
-  bool presses() const noexcept {
-    return !(tool.force.squaredNorm() == 0.0) || (blade && !(blade->force().squaredNorm() == 0.0));
-  }
-
-  void reset() noexcept;
-};
 
 /// One tissue of a servo: what `HapticServo::tick` does with it, up to the forces of its contacts. Everything but the
 /// constructor runs in the tick: no throw, no allocation.
@@ -70,8 +44,7 @@ class TouchedTissue {
   void iterate(int linearisations) noexcept { solved_ |= problem_->iterate(view_, tools_, linearisations); }
   void end() noexcept { solved_ |= problem_->end(view_, tools_); }
   void set_unsolved() noexcept { solved_.set(StatusFlag::solver_not_converged); }
-  /// What it does with tools that have lost the tissue; of the moment.
-  ToolRecovery recovery() noexcept;
+  ToolRecovery recovery() noexcept { return {view_, *problem_}; }
   /// Updates the error of a tool's force, and its correction.
   void estimate_error(std::size_t tool, bool correct) noexcept;
   /// What is to be reported of a tool at the end of a tick, other than `solved` and `news`.

@@ -3,7 +3,6 @@
 
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
-#include <palpate/haptic/detail/tool_recovery.hpp>
 #include <palpate/haptic/detail/touched_tissue.hpp>
 
 #include <algorithm>
@@ -35,18 +34,6 @@ inline std::unique_ptr<ContactProblem> prepared_problem(TissueView& tissue, cons
                                                         const ContactParameters& parameters) {
   tissue.prepare_tools(radii_of(tools), parameters);
   return std::make_unique<ContactProblem>(tissue.contact_surface(), radii_of(tools), parameters);
-}
-
-PALPATE_INLINE void Touch::reset() noexcept {
-  input.reset();
-  tool.reset();
-  if (blade) blade->reset();
-  error = {};
-  correction = 1.0;
-  lost_contact = false;
-  shift.setZero();
-  rotation.setZero();
-  rotation_change.setZero();
 }
 
 PALPATE_INLINE TouchedTissue::TouchedTissue(const GroupMember& member, const ToolList& tools,
@@ -97,10 +84,6 @@ PALPATE_INLINE void TouchedTissue::note_updates() noexcept {
   updates_ = updates;
   started_ = true;
   for (Touch& touch : touches_) touch.input.note_tissue(has_news);
-}
-
-PALPATE_INLINE ToolRecovery TouchedTissue::recovery() noexcept {
-  return {view_, *problem_};
 }
 
 /// The expected error is subtracted as far as its bound is small: where the tissue deforms otherwise than it was
