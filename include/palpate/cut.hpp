@@ -1,6 +1,7 @@
 // Include next to palpate.hpp for tissue that is cut while it is touched: HapticFEModel on Cuttable<...>, its visual
-// surface, and the thread that applies the cuts.
+// surface, detached pieces, and the thread that applies the cuts.
 #pragma once
 
 #include <palpate/cut/cuttable.hpp>
+#include <palpate/cut/detached_piece.hpp>
 #include <palpate/haptic/background_worker.hpp>

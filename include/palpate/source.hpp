@@ -64,6 +64,7 @@
 #include <palpate/haptic/servo_options.ipp>
 #include <palpate/haptic/servo_snapshot.ipp>
 #include <palpate/haptic/tick_view.ipp>
+#include <palpate/haptic/trocar.ipp>
 #include <palpate/io/abaqus.ipp>
 #include <palpate/io/decimal.ipp>
 #include <palpate/io/detail/abaqus_groups.ipp>

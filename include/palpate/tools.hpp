@@ -6,3 +6,4 @@
 #include <palpate/contact/tissue_group.hpp>
 #include <palpate/contact/tools.hpp>
 #include <palpate/haptic/jaws.hpp>
+#include <palpate/haptic/trocar.hpp>

@@ -1,0 +1,189 @@
+// Tools through a port: what the tip does, what the handle feels, and that both have the same work.
+#include <palpate/haptic/trocar.hpp>
+
+#include <palpate/core/rigid_motion.hpp>
+#include <palpate/haptic/haptic_session.hpp>
+#include <palpate/testing/device_laws.hpp>
+#include <palpate/testing/random.hpp>
+
+#include "contact/servo_session.hpp"
+#include "refused.hpp"
+
+#include "catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace palpate;
+
+namespace {
+
+/// A device that the test moves; it keeps the last force.
+struct Handle {
+  ToolState read() noexcept {
+    state.time = state.now = 1e-3 * tick++;
+    return state;
+  }
+  Status write(const GatedForce& f) noexcept {
+    force = f;
+    return f.status;
+  }
+  DeviceLimits limits() const noexcept { return device; }
+  void start() { started = true; }
+  void stop() noexcept { started = false; }
+
+  ToolState state;
+  DeviceLimits device{.peak_force = 50.0,
+                      .continuous_force = 50.0,
+                      .stiffness = 4000.0,
+                      .peak_torque = 5.0,
+                      .rotational_stiffness = 20.0};
+  GatedForce force;
+  int tick = 0;
+  bool started = false;
+};
+
+Quaternion<double> orientation(const ToolState& s) {
+  return {s.orientation[0], s.orientation[1], s.orientation[2], s.orientation[3]};
+}
+
+const TrocarPort port{.position = {0.02, -0.01, 0.05}, .shaft = {0.0, 3.0, 4.0}, .length = 0.3};
+
+/// What a device renders in a steady state, so that ramps are over.
+template <class Device>
+GatedForce rendered(Device& device, Handle& handle, const GatedForce& force) {
+  for (int i = 0; i < 200; ++i) {
+    device.read();
+    device.write(force);
+  }
+  return handle.force;
+}
+
+}  // namespace
+
+TEST_CASE("the tip of a tool through a port is opposite to the handle", "[haptic][trocar]") {
+  Handle handle;
+  FulcrumDevice tip(handle, port);
+  testing::Random random(5);
+  for (int i = 0; i < 50; ++i) {
+    const Vector3 away = random.vector<3>(-1.0, 1.0).normalized();
+    const double outside = 0.1 + 0.15 * random.uniform();
+    handle.state.position = port.position + outside * away;
+    const ToolState s = tip.read();
+    CHECK((s.position - (port.position - (port.length - outside) * away)).norm() <= 1e-12);
+    const Vector3 axis = rotation_matrix(orientation(s)) * Vector3(0.0, 0.6, 0.8);
+    CHECK((axis + away).norm() <= 1e-9);
+    CHECK(tip.lever() == Catch::Approx((port.length - outside) / outside));
+  }
+  handle.state.position = port.position + Vector3(0.0, 0.0, 0.01);  // closer than the longest lever allows
+  CHECK((tip.read().position - (port.position - Vector3(0.0, 0.0, 0.225))).norm() <= 1e-12);
+  CHECK(tip.lever() == Catch::Approx(3.0));
+  handle.state.position = port.position;
+  CHECK(tip.read().position.allFinite());
+}
+
+TEST_CASE("force and torque at the tip do the work of the force at the handle", "[haptic][trocar]") {
+  testing::Random random(6);
+  for (int i = 0; i < 20; ++i) {
+    Handle handle;
+    FulcrumDevice tip(handle, port);
+    const Vector3 at = port.position + (0.1 + 0.15 * random.uniform()) * random.vector<3>(-1.0, 1.0).normalized();
+    const Vector3 force = random.vector<3>(-1.0, 1.0), torque = random.vector<3>(-0.1, 0.1);
+    handle.state.position = at;
+    const Vector3 at_handle = rendered(tip, handle, testing::gated(force, torque)).force();
+    constexpr double step = 1e-6;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 path = step * Vector3::Unit(c);
+      handle.state.position = at - path;
+      const ToolState before = tip.read();
+      handle.state.position = at + path;
+      const ToolState after = tip.read();
+      const Matrix3 turn = rotation_matrix(orientation(after)) * rotation_matrix(orientation(before)).transpose();
+      // Roll about the shaft has no effect: the mapping leaves it out.
+      const Vector3 axis = (port.position - at).normalized();
+      Vector3 angle = rotation_vector(turn);
+      angle -= angle.dot(axis) * axis;
+      const double work = force.dot(after.position - before.position) + torque.dot(angle);
+      CHECK(at_handle.dot(2.0 * path) == Catch::Approx(work).epsilon(1e-5).margin(1e-10));
+    }
+  }
+}
+
+TEST_CASE("a session with a fulcrum renders no more stiffness than the device can", "[haptic][trocar]") {
+  Handle handle;
+  FulcrumDevice tip(handle, port);
+  const DeviceLimits limits = tip.limits();
+  CHECK(limits.stiffness == Catch::Approx(4000.0 / 9.0));
+  CHECK(limits.peak_force == Catch::Approx(50.0 / 3.0));
+  // A spring at the tip, and what it does at the handle across the shaft with the longest lever.
+  handle.state.position = port.position + Vector3(0.0, 0.0, 0.075);
+  const Vector3 at = tip.read().position;
+  handle.state.position += Vector3(1e-4, 0.0, 0.0);
+  const Vector3 moved = tip.read().position - at;
+  const Vector3 at_handle = rendered(tip, handle, testing::gated(-limits.stiffness * moved)).force();
+  CHECK(-at_handle[0] / 1e-4 <= handle.device.stiffness * 1.01);
+  CHECK(-at_handle[0] / 1e-4 > 0.9 * handle.device.stiffness);
+}
+
+TEST_CASE("a port draws the shaft back, at the handle as force and torque", "[haptic][trocar]") {
+  Handle handle;
+  const TrocarPort down{.position = {0.0, 0.0, 0.0}, .length = 0.3, .stiffness = 1000.0};
+  PortedDevice device(handle, down);
+  handle.state.position = Vector3(2e-3, 0.0, 0.1);  // 2 mm beside the port, 100 mm above
+  GatedForce at_handle = rendered(device, handle, testing::gated(Vector3(0.0, 0.0, 0.5)));
+  CHECK(device.deviation() == Catch::Approx(2e-3));
+  CHECK((at_handle.force() - Vector3(-2.0, 0.0, 0.5)).norm() <= 1e-9);
+  CHECK((at_handle.torque() - Vector3(0.0, 0.2, 0.0)).norm() <= 1e-9);  // (0, 0, -0.1) x (-2, 0, 0)
+  handle.state.position = Vector3(0.0, 0.0, 0.1);
+  at_handle = rendered(device, handle, testing::gated(Vector3(0.1, 0.0, 0.0)));
+  CHECK((at_handle.force() - Vector3(0.1, 0.0, 0.0)).norm() <= 1e-9);
+  for (const double height : {-0.05, 0.35}) {  // the port is not beside the shaft
+    handle.state.position = Vector3(0.05, 0.0, height);
+    CHECK(rendered(device, handle, testing::gated(Vector3(0.1, 0.0, 0.0))).force()[0] == Catch::Approx(0.1));
+  }
+}
+
+TEST_CASE("readings that are no pose move nothing, and give no force", "[haptic][trocar]") {
+  Handle handle;
+  FulcrumDevice tip(handle, port);
+  handle.state.position = port.position + Vector3(0.0, 0.1, 0.1);
+  CHECK(rendered(tip, handle, testing::gated(Vector3(1.0, 0.0, 0.0))).force().norm() > 0.1);
+  handle.state.position[1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(tip.read().position[1]));
+  handle.state.position[1] = 0.1;
+  handle.state.valid = false;
+  CHECK_FALSE(tip.read().valid);
+  tip.write(testing::gated(Vector3(1.0, 0.0, 0.0)));
+  CHECK(handle.force.force().norm() == 0.0);
+}
+
+TEST_CASE("a session feels tissue through a port", "[haptic][trocar][session]") {
+  test::Pad pad = test::make_pad();
+  Handle handle;
+  const TrocarPort above{.position = {0.015, 0.015, test::pad_height + 0.1}, .length = 0.25};
+  // The tip 1 mm deep, straight below the port: 0.25 - (0.1 - 4 mm + 1 mm) outside.
+  handle.state.position = above.position + Vector3(0.0, 0.0, 0.25 - 0.1 + test::sphere_radius - 1e-3);
+  FulcrumDevice tip(handle, above);
+  HapticSession session(tip, pad, SphereTool{test::sphere_radius});
+  session.run({.duration = 0.2, .paced = false});
+  const Vector3 force = session.snapshot().contact_force();
+  CHECK(force[2] > 0.01);
+  CHECK_FALSE(handle.started);
+}
+
+TEST_CASE("ports that cannot be are refused", "[haptic][trocar][refused]") {
+  Handle handle;
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  const auto refuses = [&](const TrocarPort& bad) {
+    CHECK_REFUSED(SetupErrorKind::bad_argument, FulcrumDevice(handle, bad));
+    CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, bad));
+  };
+  refuses({.position = {not_a_number, 0.0, 0.0}});
+  refuses({.shaft = {0.0, 0.0, 0.0}});
+  refuses({.length = 0.0});
+  refuses({.longest_lever = -1.0});
+  refuses({.stiffness = infinity});
+  CHECK_REFUSED(SetupErrorKind::bad_argument, FulcrumDevice(handle, port, 0.0));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, TrocarPort{.stiffness = 1e5}));
+}
