@@ -20,6 +20,9 @@
 
 using namespace palpate;
 
+// Short names that other tests of this folder have, too.
+namespace detached_piece_test {
+
 namespace {
 
 using Tissue = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
@@ -150,3 +153,5 @@ TEST_CASE("pieces that are cut again are several, and lose what is removed", "[c
   while (tissue.process_cuts()) continue;
   CHECK(detached_pieces(tissue).size() == pieces.size() - 1);
 }
+
+}  // namespace detached_piece_test

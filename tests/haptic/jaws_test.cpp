@@ -21,6 +21,9 @@
 
 using namespace palpate;
 
+// Short names that other tests of this folder have, too.
+namespace jaws_test {
+
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -275,3 +278,5 @@ TEST_CASE("a session takes jaws as two devices", "[haptic][jaws][session]") {
   CHECK(handle.writes > 100);
   CHECK(handle.stops == 1);
 }
+
+}  // namespace jaws_test

@@ -16,6 +16,9 @@ using namespace palpate;
 using test::Pad;
 using test::pad_height;
 
+// Short names that other tests of this folder have, too.
+namespace live_parameters_test {
+
 namespace {
 
 using test::sphere_radius;
@@ -150,3 +153,5 @@ TEST_CASE("parameters that no servo can have are refused", "[haptic][servo][live
   CHECK_NOTHROW(smooth.set_friction(0.0));
   CHECK(rough.friction() == 0.3);
 }
+
+}  // namespace live_parameters_test

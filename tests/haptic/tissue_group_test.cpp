@@ -28,6 +28,9 @@
 using namespace palpate;
 using test::Pad;
 
+// Short names that other tests of this folder have, too.
+namespace tissue_group_test {
+
 namespace {
 
 using Static = HapticFEModel<Smoothed<Tet4>, LinearElastic, Condensed<SelectiveInverse>>;
@@ -546,3 +549,5 @@ TEST_CASE("groups that cannot be touched are refused", "[haptic][group][refused]
   outer.add(untouchable);
   CHECK(outer.members().size() == 3);
 }
+
+}  // namespace tissue_group_test

@@ -17,6 +17,9 @@
 
 using namespace palpate;
 
+// Short names that other tests of this folder have, too.
+namespace trocar_test {
+
 namespace {
 
 /// A device that the test moves; it keeps the last force.
@@ -187,3 +190,5 @@ TEST_CASE("ports that cannot be are refused", "[haptic][trocar][refused]") {
   CHECK_REFUSED(SetupErrorKind::bad_argument, FulcrumDevice(handle, port, 0.0));
   CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, TrocarPort{.stiffness = 1e5}));
 }
+
+}  // namespace trocar_test

@@ -4,6 +4,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/mesh/surface.hpp>
+#include <palpate/model/haptic_fe_model.hpp>
 
 #include <array>
 #include <utility>
