@@ -12,6 +12,7 @@
 #include <palpate/testing/random.hpp>
 
 #include "catch.hpp"
+#include "refused.hpp"
 
 #include <map>
 #include <numeric>
@@ -90,6 +91,14 @@ TEST_CASE("a layer that is cut off has the mass, inertia and surface of a box", 
   CHECK(volume_of(piece) == Catch::Approx(mass / density).epsilon(1e-10));
   CHECK(piece.elements.size() == block().elements.size() / 3);
   CHECK(piece.points.size() == piece.nodes.size());
+}
+
+TEST_CASE("a piece without density is refused", "[cut][piece][refused]") {
+  Tissue tissue(block(), below(), LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
+  CHECK(detached_pieces(tissue).empty());
+  tissue.cut(across(Eigen::Isometry3d::Identity()));
+  while (tissue.process_cuts()) continue;
+  CHECK_REFUSED(SetupErrorKind::bad_density, detached_pieces(tissue));
 }
 
 TEST_CASE("pieces of several densities, of quadratic elements and of moving tissue", "[cut][piece]") {

@@ -38,7 +38,7 @@ struct Handle {
   Status write(const GatedForce& f) noexcept {
     force = f;
     ++writes;
-    return f.status;
+    return {};
   }
   DeviceLimits limits() const noexcept { return device; }
   void start() { ++starts; }
@@ -89,11 +89,16 @@ TEST_CASE("jaws rotate about their pivot by half of the opening, in opposite dir
   opening = 5.0;
   jaws.first().read();
   CHECK(jaws.opening() == joint.widest);
-  for (const double bad : {not_a_number, -1.0}) {  // the last one stays
-    opening = bad;
-    jaws.first().read();
-    CHECK(jaws.opening() == joint.widest);
-  }
+  opening = not_a_number;  // the last one stays
+  jaws.first().read();
+  CHECK(jaws.opening() == joint.widest);
+  opening = -0.01;
+  jaws.first().read();
+  CHECK(jaws.opening() == 0.0);
+  CHECK(jaws.first().limits().stiffness == 2000.0);
+  CHECK(jaws.first().limits().rotational_stiffness == 5.0);
+  handle.device.rotational_stiffness = 1.0;
+  CHECK(Jaws(handle, joint, GivenOpening{&opening}).first().limits().rotational_stiffness == 0.5);
 }
 
 TEST_CASE("the device has the sum of the forces on the jaws, within its limits", "[haptic][jaws]") {
@@ -119,6 +124,12 @@ TEST_CASE("the device has the sum of the forces on the jaws, within its limits",
   for (int i = 0; i < 200; ++i) tick(1e3);
   CHECK(handle.force.force().norm() <= handle.device.peak_force * (1.0 + 1e-12));
   CHECK(handle.force.status.has(StatusFlag::saturated));
+  jaws.first().read();
+  jaws.first().write(testing::gated(1e3 * up));
+  CHECK(jaws.second().write(testing::gated(1e3 * up)).has(StatusFlag::saturated));
+  jaws.first().write(GatedForce{});  // the loop has ended: no state was read
+  jaws.second().write(testing::gated(up));
+  CHECK(handle.force.force().norm() == 0.0);
   jaws.first().stop();
   jaws.second().stop();
   CHECK(handle.starts == 1);
@@ -163,6 +174,8 @@ TEST_CASE("jaws with an impossible joint are refused", "[haptic][jaws][refused]"
   refuses({.grip_torque = -1.0});
   refuses({.stiffness = infinity});
   CHECK_REFUSED(SetupErrorKind::bad_argument, Jaws(handle, JawJoint{}, ButtonOpening(), 0.0));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, ButtonOpening(1u, -0.5));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, ButtonOpening(1u, 0.5, 0.0));
 }
 
 namespace {

@@ -30,7 +30,7 @@ struct Handle {
   }
   Status write(const GatedForce& f) noexcept {
     force = f;
-    return f.status;
+    return {};
   }
   DeviceLimits limits() const noexcept { return device; }
   void start() { started = true; }
@@ -41,7 +41,7 @@ struct Handle {
                       .continuous_force = 50.0,
                       .stiffness = 4000.0,
                       .peak_torque = 5.0,
-                      .rotational_stiffness = 20.0};
+                      .rotational_stiffness = 200.0};
   GatedForce force;
   int tick = 0;
   bool started = false;
@@ -67,9 +67,9 @@ GatedForce rendered(Device& device, Handle& handle, const GatedForce& force) {
 
 TEST_CASE("the tip of a tool through a port is opposite to the handle", "[haptic][trocar]") {
   Handle handle;
-  FulcrumDevice tip(handle, port);
   testing::Random random(5);
   for (int i = 0; i < 50; ++i) {
+    FulcrumDevice tip(handle, port);
     const Vector3 away = random.vector<3>(-1.0, 1.0).normalized();
     const double outside = 0.1 + 0.15 * random.uniform();
     handle.state.position = port.position + outside * away;
@@ -79,6 +79,7 @@ TEST_CASE("the tip of a tool through a port is opposite to the handle", "[haptic
     CHECK((axis + away).norm() <= 1e-9);
     CHECK(tip.lever() == Catch::Approx((port.length - outside) / outside));
   }
+  FulcrumDevice tip(handle, port);
   handle.state.position = port.position + Vector3(0.0, 0.0, 0.01);  // closer than the longest lever allows
   CHECK((tip.read().position - (port.position - Vector3(0.0, 0.0, 0.225))).norm() <= 1e-12);
   CHECK(tip.lever() == Catch::Approx(3.0));
@@ -117,16 +118,35 @@ TEST_CASE("a session with a fulcrum renders no more stiffness than the device ca
   Handle handle;
   FulcrumDevice tip(handle, port);
   const DeviceLimits limits = tip.limits();
-  CHECK(limits.stiffness == Catch::Approx(4000.0 / 9.0));
-  CHECK(limits.peak_force == Catch::Approx(50.0 / 3.0));
-  // A spring at the tip, and what it does at the handle across the shaft with the longest lever.
-  handle.state.position = port.position + Vector3(0.0, 0.0, 0.075);
-  const Vector3 at = tip.read().position;
-  handle.state.position += Vector3(1e-4, 0.0, 0.0);
-  const Vector3 moved = tip.read().position - at;
-  const Vector3 at_handle = rendered(tip, handle, testing::gated(-limits.stiffness * moved)).force();
-  CHECK(-at_handle[0] / 1e-4 <= handle.device.stiffness * 1.01);
-  CHECK(-at_handle[0] / 1e-4 > 0.9 * handle.device.stiffness);
+  CHECK(limits.stiffness == Catch::Approx(0.8 * 4000.0 / 9.0));
+  // A spring at the tip, as it acts at the handle across the shaft, also where that is nearer than the longest lever.
+  const double least = 0.075;
+  for (const double distance : {2.0 * least, least, 0.5 * least, 0.1 * least, 0.02 * least}) {
+    handle.state.position = port.position + Vector3(0.0, 0.0, distance);
+    const Vector3 at = tip.read().position;
+    handle.state.position += Vector3(1e-3 * distance, 0.0, 0.0);
+    const Vector3 moved = tip.read().position - at;
+    const GatedForce at_handle = rendered(tip, handle, testing::gated(-limits.stiffness * moved));
+    const double stiffness = -at_handle.force()[0] / (1e-3 * distance);
+    CAPTURE(distance, stiffness);
+    CHECK(stiffness <= 0.81 * handle.device.stiffness);
+    CHECK(stiffness > 0.08 * handle.device.stiffness);
+    CHECK(at_handle.status.has(StatusFlag::degraded_model) == (distance < least));
+  }
+}
+
+TEST_CASE("a handle beyond the port stays at it", "[haptic][trocar]") {
+  Handle handle;
+  FulcrumDevice tip(handle, port);
+  handle.state.position = port.position + Vector3(0.0, 0.0, 0.1);
+  tip.read();
+  for (const double beyond : {-1e-4, -0.05}) {
+    handle.state.position = port.position + Vector3(0.0, 0.0, beyond);
+    CHECK((tip.read().position - (port.position - Vector3(0.0, 0.0, 0.225))).norm() <= 1e-9);
+    CHECK(rendered(tip, handle, testing::gated(Vector3(1.0, 0.0, 0.0))).force().norm() == 0.0);
+  }
+  handle.state.position = port.position + Vector3(0.0, 0.0, 0.1);
+  CHECK((tip.read().position - (port.position - Vector3(0.0, 0.0, 0.2))).norm() <= 1e-9);
 }
 
 TEST_CASE("a port draws the shaft back, at the handle as force and torque", "[haptic][trocar]") {
@@ -138,13 +158,59 @@ TEST_CASE("a port draws the shaft back, at the handle as force and torque", "[ha
   CHECK(device.deviation() == Catch::Approx(2e-3));
   CHECK((at_handle.force() - Vector3(-2.0, 0.0, 0.5)).norm() <= 1e-9);
   CHECK((at_handle.torque() - Vector3(0.0, 0.2, 0.0)).norm() <= 1e-9);  // (0, 0, -0.1) x (-2, 0, 0)
+  handle.state.position = Vector3(30e-3, 0.0, 0.1);                     // beyond the radius, but it has entered before
+  CHECK(rendered(device, handle, testing::gated(Vector3(0.0, 0.0, 0.0))).force()[0] == Catch::Approx(-30.0));
+  CHECK(device.is_in_port());
   handle.state.position = Vector3(0.0, 0.0, 0.1);
   at_handle = rendered(device, handle, testing::gated(Vector3(0.1, 0.0, 0.0)));
   CHECK((at_handle.force() - Vector3(0.1, 0.0, 0.0)).norm() <= 1e-9);
-  for (const double height : {-0.05, 0.35}) {  // the port is not beside the shaft
+  for (const double height : {-0.05, 0.35, 0.1}) {  // the port is not beside the shaft; then it is, but far away
     handle.state.position = Vector3(0.05, 0.0, height);
     CHECK(rendered(device, handle, testing::gated(Vector3(0.1, 0.0, 0.0))).force()[0] == Catch::Approx(0.1));
+    CHECK_FALSE(device.is_in_port());
   }
+  CHECK(device.limits().stiffness == Catch::Approx(3000.0));
+}
+
+TEST_CASE("the force of a port begins with a ramp when the shaft enters", "[haptic][trocar]") {
+  Handle handle;
+  PortedDevice device(handle, TrocarPort{.position = {0.0, 0.0, 0.0}, .length = 0.3, .stiffness = 1000.0});
+  double jump = 0.0, before = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    handle.state.position = Vector3(8e-3, 0.0, -0.01 + 1e-4 * i);  // from beside the port, 8 mm from its middle
+    device.read();
+    device.write(testing::gated(Vector3(0.0, 0.0, 0.0)));
+    jump = std::max(jump, std::abs(handle.force.force()[0] - before));
+    before = handle.force.force()[0];
+  }
+  CHECK(before == Catch::Approx(-8.0));
+  CHECK(jump <= 0.5);
+}
+
+TEST_CASE("a device around another one keeps its log, its flags and its silence", "[haptic][trocar]") {
+  struct Logging : Handle {
+    void note(Status status, double now) noexcept { noted = status, at = now; }
+    bool restarts() const noexcept { return false; }
+    Status noted;
+    double at = 0.0;
+  };
+  Logging handle;
+  PortedDevice device(handle, TrocarPort{.position = {0.0, 0.0, 0.0}, .length = 0.3, .stiffness = 1000.0});
+  device.note(StatusFlag::ramping, 3.5);
+  CHECK(handle.noted.has(StatusFlag::ramping));
+  CHECK(handle.at == 3.5);
+  CHECK_FALSE(device.restarts());
+  handle.state.position = Vector3(5e-3, 0.0, 0.1);
+  CHECK(rendered(device, handle, testing::gated(Vector3(1.0, 0.0, 0.0))).force().norm() > 1.0);
+  device.read();
+  CHECK(device.write(testing::gated(Vector3(0.0, 0.0, 1e3))).has(StatusFlag::saturated));
+  device.write(GatedForce{});  // the loop has ended: no state was read
+  CHECK(handle.force.force().norm() == 0.0);
+  FulcrumDevice tip(handle, port);
+  handle.state.position = port.position + Vector3(0.0, 0.1, 0.1);
+  CHECK(rendered(tip, handle, testing::gated(Vector3(1.0, 0.0, 0.0))).force().norm() > 0.1);
+  tip.write(testing::gated(Vector3(1.0, 0.0, 0.0)));
+  CHECK(handle.force.force().norm() == 0.0);
 }
 
 TEST_CASE("readings that are no pose move nothing, and give no force", "[haptic][trocar]") {
@@ -187,8 +253,11 @@ TEST_CASE("ports that cannot be are refused", "[haptic][trocar][refused]") {
   refuses({.length = 0.0});
   refuses({.longest_lever = -1.0});
   refuses({.stiffness = infinity});
+  refuses({.radius = 0.0});
   CHECK_REFUSED(SetupErrorKind::bad_argument, FulcrumDevice(handle, port, 0.0));
   CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, TrocarPort{.stiffness = 1e5}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, TrocarPort{.length = 0.3, .stiffness = 3e3}));
+  CHECK_REFUSED(SetupErrorKind::bad_argument, PortedDevice(handle, TrocarPort{.length = 0.1, .stiffness = 3e3}, 500.0));
 }
 
 }  // namespace trocar_test

@@ -56,7 +56,6 @@ class ContactProblem {
 
   /// Coulomb's coefficient from the next tick on; without effect where it was zero at construction.
   void set_friction(double coefficient) noexcept { rows_.set_friction(coefficient); }
-  bool has_friction() const noexcept { return rows_.has_friction(); }
 
   /// Largest number of contacts.
   int capacity() const noexcept { return rows_.capacity(); }

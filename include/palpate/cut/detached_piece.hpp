@@ -1,6 +1,7 @@
 // Pieces that cuts have detached, as rigid bodies: for a physics engine, and to draw them.
 #pragma once
 
+#include <palpate/core/setup_error.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/local/mass.hpp>
 #include <palpate/mesh/surface.hpp>
@@ -12,7 +13,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// A piece where it was detached, as it was deformed then; world frame. All of its surface is closed, also where the
+/// A piece where it was detached, world frame: as the model has it, displaced as before that cut without tools, or at
+/// rest where that was too far for linear elasticity. All of its surface is closed, also where the
 /// scene does not draw the body.
 struct DetachedPiece {
   double mass = 0.0;                          ///< [kg]
@@ -79,7 +81,9 @@ void add_surface(const CutTopology<E>& topology, PositionOf&& position_of, Detac
 }  // namespace detail
 
 /// The pieces that cuts have detached from a model that is cut, by ascending lowest element; a piece that is cut again
-/// is several. Waits for a cut in progress; for any thread but the one that ticks. Allocates; O(elements).
+/// is several. Each call returns all of them: remove the elements of those that an engine has taken over with a
+/// CutOrder. Throws bad_density for a piece without mass. Waits for a cut in progress; for any thread but the one that
+/// ticks, and for moving tissue for the one that draws. Allocates; O(elements).
 template <class E, class M, class Solver>
 std::vector<DetachedPiece> detached_pieces(HapticFEModel<E, M, Solver>& model) {
   const VectorX u = model.displacement();
@@ -104,6 +108,8 @@ std::vector<DetachedPiece> detached_pieces(HapticFEModel<E, M, Solver>& model) {
         const double density = body.density[body.region_of(e)];
         detail::add_element<E>(at, density * detail::element_mass<E>(element_nodes<E>(mesh, e)), piece);
       }
+      if (!(piece.mass > 0.0))
+        raise(SetupErrorKind::bad_density, "a detached piece has no mass", "Give the material a density");
       detail::finish_moments(piece);
       detail::add_surface(topology, position_of, piece);
     }

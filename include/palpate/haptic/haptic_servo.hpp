@@ -85,8 +85,8 @@ class HapticServo {
 
   // Any thread, also while another one ticks
 
-  /// Changes Coulomb's coefficient of a tissue within 0.1 s. Throws bad_argument unless it is finite and not negative,
-  /// index_out_of_range for a tissue that does not exist, and unsupported where it was zero at construction: without
+  /// Changes Coulomb's coefficient of a tissue within 0.1 s; `reset` keeps it. Throws bad_argument for one outside 0 to
+  /// 4, index_out_of_range for a tissue that does not exist, and unsupported where it was zero at construction: without
   /// friction a servo has no room for it.
   void set_friction(double coefficient, std::size_t tissue = 0);
   double friction(std::size_t tissue = 0) const noexcept;

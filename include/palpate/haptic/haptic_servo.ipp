@@ -168,10 +168,9 @@ PALPATE_INLINE void HapticServo::release() noexcept {
 PALPATE_INLINE void HapticServo::set_friction(double coefficient, std::size_t tissue) {
   detail::require_index(tissue, tissues_.size(), "tissue");
   detail::RampedValue& friction = tissues_[tissue].friction();
-  if (!(coefficient >= 0.0 && coefficient < infinity))
-    raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(coefficient),
-          "It must be finite and not negative");
-  if (friction.wanted() == 0.0 && !tissues_[tissue].problem().has_friction() && coefficient > 0.0)
+  if (!(coefficient >= 0.0 && coefficient <= 4.0))
+    raise(SetupErrorKind::bad_argument, "the coefficient of friction is " + number(coefficient), "Give 0 to 4");
+  if (!tissues_[tissue].may_have_friction() && coefficient > 0.0)
     raise(SetupErrorKind::unsupported, "friction in a servo that was made without",
           "Set ServoOptions::contact.friction, or that of the tissue in its group, to a value above zero");
   friction.set(coefficient);

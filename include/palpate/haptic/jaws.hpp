@@ -1,4 +1,4 @@
-// Jaws of a grasper or scissors: two tools on a joint, for one device.
+// Jaws of a grasper: two tools on a joint, for one device.
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
@@ -23,7 +23,8 @@ struct JawJoint {
   double widest = 0.6;              ///< [rad] largest opening
   double grip_force = 20.0;         ///< [N] largest force on one jaw; the device renders the sum within its own limits
   double grip_torque = 0.5;         ///< [N m] the same about the pivot
-  double stiffness = 5.0;           ///< [N m/rad] of the jaws about the pivot, towards the opening
+  double stiffness = 5.0;           ///< [N m/rad] of each jaw about the pivot; for a device that renders torque at most
+                                    ///< half of what it renders
 
   /// Throws bad_argument unless the pivot is finite, the axis finite and not zero, and the other values are positive.
   void require_valid() const;
@@ -40,8 +41,9 @@ concept JawOpening = requires(O& opening, const ToolState& state) {
 /// Closes while one of the buttons is pressed, and opens otherwise, at a constant speed.
 class ButtonOpening {
  public:
-  explicit ButtonOpening(std::uint32_t buttons = 1, double widest = 0.6, double speed = 1.5) noexcept
-      : buttons_(buttons), widest_(widest), speed_(speed), opening_(widest) {}
+  /// Throws bad_argument unless the widest opening [rad], usually that of the joint, and the speed [rad/s] are
+  /// positive.
+  explicit ButtonOpening(std::uint32_t buttons = 1, double widest = 0.6, double speed = 1.5);
   double operator()(const ToolState& state) noexcept;
 
  private:
@@ -63,8 +65,9 @@ class JawPair {
   /// The state of a jaw; `side` is 1 or -1.
   ToolState state(double side) const noexcept;
   DeviceLimits limits() const noexcept;
-  void note(std::size_t jaw, const GatedForce& force) noexcept { force_[jaw] = force; }
-  /// The force for the device.
+  void set(std::size_t jaw, const GatedForce& force) noexcept { force_[jaw] = force; }
+  void set_now(double now) noexcept { now_ = now; }
+  /// The force for the device; none where no state was taken since the last one: the loop has ended.
   GatedForce sum() noexcept;
   double opening() const noexcept { return opening_; }
   double joint_torque() const noexcept { return joint_torque_; }
@@ -76,7 +79,8 @@ class JawPair {
   ForceGate gate_;
   ToolState state_;
   double opening_;
-  double joint_torque_ = 0.0;
+  double joint_torque_ = 0.0, now_ = std::numeric_limits<double>::quiet_NaN();
+  bool has_state_ = false;
   std::array<GatedForce, 2> force_;
 };
 
@@ -87,15 +91,16 @@ class JawPair {
 ///     Jaws jaws(stylus, JawJoint{.pivot = {0, 0, -0.02}}, ButtonOpening());
 ///     HapticSession session(jaws.devices(), tissue, {upper, lower});
 ///
+/// The tools are ConvexTools in the frame of the pivot: spheres and blades do not follow the opening.
 /// The force on the device is the sum of the forces on the jaws, its torque that of both about the handle, within its
-/// limits by a gate of its own; what presses the jaws apart is `joint_torque`. Each jaw has half of the stiffness that
-/// the device renders. The jaws do not touch each other. Refers to the device; neither copied nor moved. One thread, as
-/// a device: the session's.
+/// limits by a gate of its own, whose ramp comes after that of the session; what presses the jaws apart is
+/// `joint_torque`. Each jaw has half of the stiffness that the device renders. The jaws do not touch each other. Refers
+/// to the device; neither copied nor moved. One thread, as a device: the session's.
 template <HapticDevice Device, JawOpening Opening = ButtonOpening>
 class Jaws {
  public:
   /// One jaw: a HapticDevice. The first one reads the device and its opening, the second one writes to it: a session
-  /// reads its devices in order, then writes.
+  /// reads its devices in order, then writes. It needs both.
   class Jaw {
    public:
     ToolState read() noexcept {
@@ -103,9 +108,23 @@ class Jaws {
       return jaws_->pair_.state(number_ == 0 ? 1.0 : -1.0);
     }
     Status write(const GatedForce& force) noexcept {
-      jaws_->pair_.note(number_, force);
-      return number_ == 0 ? Status{} : jaws_->device_->write(jaws_->pair_.sum());
+      jaws_->pair_.set(number_, force);
+      if (number_ == 0) return {};
+      const GatedForce sum = jaws_->pair_.sum();
+      return sum.status | jaws_->device_->write(sum);
     }
+    /// For the gate, and for a device that keeps a log.
+    void note(Status status, double now = std::numeric_limits<double>::quiet_NaN()) noexcept {
+      if (number_ > 0) return;
+      jaws_->pair_.set_now(now);
+      if constexpr (requires(Device & d) { d.note(status, now); })
+        jaws_->device_->note(status, now);
+      else if constexpr (requires(Device & d) { d.note(status); })
+        jaws_->device_->note(status);
+    }
+    /// Forwards that of a replay.
+    bool restarts() const noexcept requires requires(const Device& d) { d.restarts(); }
+    { return number_ == 0 && std::as_const(*jaws_->device_).restarts(); }
     DeviceLimits limits() const noexcept { return jaws_->pair_.limits(); }
     void start() {
       if (number_ > 0) return;
@@ -146,6 +165,8 @@ class Jaws {
  private:
   void read() noexcept {
     const ToolState state = device_->read();
+    if constexpr (requires(const Device& d) { d.restarts(); })
+      if (std::as_const(*device_).restarts()) pair_.reset();
     pair_.take(state, opening_(state));
   }
 

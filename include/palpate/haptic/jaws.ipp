@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -20,6 +21,13 @@ PALPATE_INLINE void JawJoint::require_valid() const {
           "It must be above 0 and below 3 rad");
   if (!(is_positive(grip_force) && is_positive(grip_torque) && is_positive(stiffness)))
     raise(SetupErrorKind::bad_argument, "force, torque and stiffness of a joint must be positive and finite");
+}
+
+PALPATE_INLINE ButtonOpening::ButtonOpening(std::uint32_t buttons, double widest, double speed)
+    : buttons_(buttons), widest_(widest), speed_(speed), opening_(widest) {
+  if (!(widest > 0.0 && widest < 3.0 && speed > 0.0 && speed < infinity))
+    raise(SetupErrorKind::bad_argument, "jaws that open by " + number(widest) + " rad at " + number(speed) + " rad/s",
+          "Both must be positive");
 }
 
 PALPATE_INLINE double ButtonOpening::operator()(const ToolState& state) noexcept {
@@ -45,7 +53,8 @@ PALPATE_INLINE JawPair::JawPair(const JawJoint& joint, const DeviceLimits& devic
 
 PALPATE_INLINE void JawPair::take(const ToolState& state, double opening) noexcept {
   state_ = state;
-  if (opening >= 0.0) opening_ = std::min(opening, joint_.widest);  // the last one in place of NaN
+  has_state_ = true;
+  if (!std::isnan(opening)) opening_ = std::clamp(opening, 0.0, joint_.widest);  // else the last one
 }
 
 PALPATE_INLINE ToolState JawPair::state(double side) const noexcept {
@@ -65,18 +74,25 @@ PALPATE_INLINE DeviceLimits JawPair::limits() const noexcept {
   jaw.peak_force = jaw.continuous_force = joint_.grip_force;
   jaw.peak_torque = joint_.grip_torque;
   jaw.rotational_stiffness = joint_.stiffness;
+  if (device_.peak_torque > 0.0)
+    jaw.rotational_stiffness = std::min(joint_.stiffness, 0.5 * device_.rotational_stiffness);
   return jaw;
 }
 
 /// Torques of the jaws are about the pivot.
 PALPATE_INLINE GatedForce JawPair::sum() noexcept {
+  if (!std::exchange(has_state_, false)) {
+    gate_.reset();
+    joint_torque_ = 0.0;
+    return {};
+  }
   const auto& [w, x, y, z] = state_.orientation;
   const Matrix3 handle = rotation_matrix({w, x, y, z});
   const Vector3 force = force_[0].force() + force_[1].force();
   const Vector3 torque = force_[0].torque() + force_[1].torque() + cross(handle * joint_.pivot, force);
   const double apart = 0.5 * (handle * joint_.axis).dot(force_[0].torque() - force_[1].torque());
   joint_torque_ = std::isfinite(apart) ? apart : 0.0;
-  const double now = std::isfinite(state_.now) ? state_.now : state_.time;
+  const double now = std::isfinite(state_.now) ? state_.now : std::isfinite(now_) ? now_ : state_.time;
   GatedForce sum = gate_.apply(force, torque, now, state_.time, state_.valid, false);
   sum.status |= force_[0].status | force_[1].status;
   sum.error = force_[0].error.bound < force_[1].error.bound ? force_[1].error : force_[0].error;
@@ -87,6 +103,9 @@ PALPATE_INLINE void JawPair::reset() noexcept {
   gate_.reset();
   force_ = {};
   joint_torque_ = 0.0;
+  now_ = std::numeric_limits<double>::quiet_NaN();
+  has_state_ = false;
+  state_.valid = false;
 }
 
 }  // namespace detail

@@ -3,10 +3,13 @@
 
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/servo_options.hpp>
 #include <palpate/haptic/trocar.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -15,8 +18,8 @@ PALPATE_INLINE void TrocarPort::require_valid() const {
   if (!(all_finite(position) && all_finite(shaft) && shaft.norm() > 0.0))
     raise(SetupErrorKind::bad_argument, "a port has no finite position, or its shaft no direction",
           "Give TrocarPort::shaft a length above zero");
-  if (!(is_positive(length) && is_positive(longest_lever) && is_positive(stiffness)))
-    raise(SetupErrorKind::bad_argument, "length, lever and stiffness of a port must be positive and finite");
+  if (!(is_positive(length) && is_positive(longest_lever) && is_positive(stiffness) && is_positive(radius)))
+    raise(SetupErrorKind::bad_argument, "length, lever, stiffness and radius of a port must be positive and finite");
 }
 
 namespace detail {
@@ -27,15 +30,26 @@ inline TrocarPort checked(TrocarPort port) {
   return port;
 }
 
-PALPATE_INLINE void require_stable_port(const TrocarPort& port, const DeviceLimits& device) {
-  if (port.stiffness <= device.stiffness) return;
+inline void require_stiffness(double value, double most, const char* what, const char* unit) {
+  if (value <= most) return;
   SetupProblem problem;
-  problem.what = "the stiffness of a port is " + number(port.stiffness) + " N/m, the device renders " +
-                 number(device.stiffness) + " N/m stably";
+  problem.what = std::string("the stiffness of a port ") + what + " is " + number(value) + ' ' + unit +
+                 ", the device renders " + number(most) + ' ' + unit + " stably";
   problem.hint = "Reduce TrocarPort::stiffness";
-  problem.value = port.stiffness;
-  problem.threshold = device.stiffness;
+  problem.value = value;
+  problem.threshold = most;
   raise(std::move(problem));
+}
+
+/// The rotation by the smallest angle from `from` to `to`, unit vectors; by a half turn about an axis across where they
+/// are opposite.
+inline Quaternion<double> shortest_rotation(const Vector3& from, const Vector3& to) noexcept {
+  const Vector3 axis = cross(from, to);
+  const double w = 1.0 + from.dot(to);
+  if (w > 1e-9) return normalized(Quaternion<double>{w, axis[0], axis[1], axis[2]});
+  const Vector3 other = std::abs(from[0]) < 0.9 ? Vector3(1.0, 0.0, 0.0) : Vector3(0.0, 1.0, 0.0);
+  const Vector3 across = cross(from, other);
+  return normalized(Quaternion<double>{0.0, across[0], across[1], across[2]});
 }
 
 PALPATE_INLINE PortedShaft::PortedShaft(const TrocarPort& port, const DeviceLimits& device, double rate)
@@ -46,25 +60,31 @@ PALPATE_INLINE PortedShaft::PortedShaft(const TrocarPort& port, const DeviceLimi
       outside_(0.5 * port_.length),
       inside_(0.5 * port_.length) {}
 
-/// The rotation by the smallest angle from `from` to `to`, unit vectors; by a half turn about any axis across where
-/// they are opposite.
-inline Quaternion<double> shortest_rotation(const Vector3& from, const Vector3& to) noexcept {
-  const Vector3 axis = cross(from, to);
-  const double w = 1.0 + from.dot(to);
-  if (w > 1e-9) return normalized(Quaternion<double>{w, axis[0], axis[1], axis[2]});
-  const Vector3 across =
-      std::abs(from[0]) < 0.9 ? cross(from, Vector3(1.0, 0.0, 0.0)) : cross(from, Vector3(0.0, 1.0, 0.0));
-  return normalized(Quaternion<double>{0.0, across[0], across[1], across[2]});
+PALPATE_INLINE void PortedShaft::require_stable(double rate) const {
+  require_stiffness(port_.stiffness, stable_at(rate, device_, device_.stiffness), "", "N/m");
+  if (device_.peak_torque > 0.0)
+    require_stiffness(about_handle(), stable_at(rate, device_, device_.rotational_stiffness), "about the handle",
+                      "N m/rad");
 }
 
-PALPATE_INLINE ToolState PortedShaft::at_tip(const ToolState& handle) noexcept {
+PALPATE_INLINE void PortedShaft::take(const ToolState& handle) noexcept {
   state_ = handle;
+  if (!handle.valid) has_direction_ = false;
+  has_state_ = true;
+}
+
+/// The side of the port on which the handle is does not change: beyond the port it is at it.
+PALPATE_INLINE ToolState PortedShaft::at_tip(const ToolState& handle) noexcept {
   const Vector3 to_port = port_.position - handle.position;
-  const double distance = to_port.norm();
+  double distance = to_port.norm();
   if (!handle.valid || !std::isfinite(distance)) return handle;
-  if (distance > 1e-9) direction_ = to_port / distance;
+  if (has_direction_ && to_port.dot(direction_) <= 0.0)
+    distance = 0.0;
+  else if (distance > 1e-9)
+    direction_ = to_port / distance, has_direction_ = true;
   outside_ = std::max(distance, least_outside());
   inside_ = port_.length - outside_;
+  nearness_ = distance / outside_;
   ToolState tip = handle;
   tip.position = port_.position + inside_ * direction_;
   tip.velocity.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -74,44 +94,67 @@ PALPATE_INLINE ToolState PortedShaft::at_tip(const ToolState& handle) noexcept {
 }
 
 PALPATE_INLINE GatedForce PortedShaft::to_handle(const GatedForce& at_tip) noexcept {
+  if (lacks_state()) return {};
   const Vector3 &f = at_tip.force(), &u = direction_;
   const double along = u.dot(f), ratio = inside_ / outside_;
   const Vector3 force = along * u - ratio * (f - along * u) - cross(at_tip.torque(), u) / outside_;
-  return pass(force, Vector3(0.0, 0.0, 0.0), at_tip);
+  GatedForce at_handle = pass(nearness_ * force, Vector3(0.0, 0.0, 0.0), at_tip, false);
+  if (nearness_ < 1.0) at_handle.status.set(StatusFlag::degraded_model);
+  return at_handle;
 }
 
+/// Of what the handle renders with the longest lever, the coupling of the position has four fifths, that of the
+/// rotation the rest.
 PALPATE_INLINE DeviceLimits PortedShaft::limits_at_tip() const noexcept {
+  constexpr double part = 0.8;
   const double lever = std::max(1.0, port_.longest_lever), arm = least_outside();
   DeviceLimits tip = device_;
-  tip.stiffness = device_.stiffness / (lever * lever);
-  tip.peak_force = device_.peak_force / lever;
-  tip.continuous_force = device_.continuous_force / lever;
+  tip.stiffness = part * device_.stiffness / (lever * lever);
   tip.peak_torque = device_.peak_force * arm;
-  tip.rotational_stiffness = device_.stiffness * arm * arm;
+  tip.rotational_stiffness = (1.0 - part) * device_.stiffness * arm * arm;
   return tip;
 }
 
-/// The spring acts at the point of the axis that is nearest to the port, while that is between handle and tip.
+PALPATE_INLINE DeviceLimits PortedShaft::limits_beside_port() const noexcept {
+  constexpr double least_part = 0.1;
+  DeviceLimits left = device_;
+  left.stiffness = std::max(least_part * device_.stiffness, device_.stiffness - port_.stiffness);
+  left.rotational_stiffness =
+      std::max(least_part * device_.rotational_stiffness, device_.rotational_stiffness - about_handle());
+  return left;
+}
+
+/// The spring acts at the point of the axis that is nearest to the port, while that is between handle and tip. The
+/// force ramps up when the shaft enters.
 PALPATE_INLINE GatedForce PortedShaft::with_port(const GatedForce& at_handle) noexcept {
+  if (lacks_state()) return {};
   const auto& [w, x, y, z] = state_.orientation;
   const Vector3 axis = rotation_matrix({w, x, y, z}) * port_.shaft;
   const double along = axis.dot(port_.position - state_.position);
+  const Vector3 arm = along * axis, offset = state_.position + arm - port_.position;
+  const bool was_in_port = in_port_;
+  in_port_ = state_.valid && along > 0.0 && along < port_.length && (was_in_port || offset.norm() <= port_.radius);
+  deviation_ = in_port_ ? offset.norm() : 0.0;
   Vector3 force = at_handle.force(), torque = at_handle.torque();
-  deviation_ = 0.0;
-  if (along > 0.0 && along < port_.length) {
-    const Vector3 arm = along * axis, offset = state_.position + arm - port_.position;
-    deviation_ = offset.norm();
+  if (in_port_) {
     const Vector3 spring = -port_.stiffness * offset;
     force += spring;
     torque += cross(arm, spring);
   }
-  return pass(force, torque, at_handle);
+  return pass(force, torque, at_handle, in_port_ != was_in_port);
 }
 
-PALPATE_INLINE GatedForce PortedShaft::pass(const Vector3& force, const Vector3& torque,
-                                            const GatedForce& given) noexcept {
-  const double now = std::isfinite(state_.now) ? state_.now : state_.time;
-  GatedForce passed = gate_.apply(force, torque, now, state_.time, state_.valid, false);
+/// Where no state was taken since the last force, the loop has ended: the device gets none.
+PALPATE_INLINE bool PortedShaft::lacks_state() noexcept {
+  if (std::exchange(has_state_, false)) return false;
+  reset();
+  return true;
+}
+
+PALPATE_INLINE GatedForce PortedShaft::pass(const Vector3& force, const Vector3& torque, const GatedForce& given,
+                                            bool restart) noexcept {
+  const double now = std::isfinite(state_.now) ? state_.now : std::isfinite(now_) ? now_ : state_.time;
+  GatedForce passed = gate_.apply(force, torque, now, state_.time, state_.valid, restart);
   passed.status |= given.status;
   passed.error = given.error;
   return passed;
@@ -120,6 +163,9 @@ PALPATE_INLINE GatedForce PortedShaft::pass(const Vector3& force, const Vector3&
 PALPATE_INLINE void PortedShaft::reset() noexcept {
   gate_.reset();
   deviation_ = 0.0;
+  nearness_ = 1.0;
+  now_ = std::numeric_limits<double>::quiet_NaN();
+  has_state_ = has_direction_ = in_port_ = false;
 }
 
 }  // namespace detail

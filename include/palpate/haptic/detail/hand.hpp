@@ -24,6 +24,7 @@ struct Hand {
 
   void reset() noexcept {
     gate.reset();
+    compliance.settle();
     if (tank) tank->reset();
     error = {};
     tissue = first_tissue;

@@ -4,11 +4,12 @@
 #include <palpate/core/config.hpp>
 
 #include <atomic>
+#include <cmath>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// Set by any thread, followed by the one that ticks in steps of equal size, so that the force does not jump. Never
-/// waits.
+/// Set by any thread, followed by the one that ticks in steps of equal ratio, or of equal size from and to zero, so
+/// that the force does not jump. Never waits.
 class RampedValue {
  public:
   explicit RampedValue(double value) noexcept : wanted_(value), goal_(value), now_(value) {}
@@ -25,8 +26,17 @@ class RampedValue {
       goal_ = value;
       left_ = ticks;
     }
-    if (left_ > 0) now_ += (goal_ - now_) / left_--;
+    if (left_ == 0) return now_;
+    const double part = 1.0 / left_--;
+    now_ = left_ == 0                  ? goal_
+           : now_ > 0.0 && goal_ > 0.0 ? now_ * std::pow(goal_ / now_, part)
+                                       : now_ + part * (goal_ - now_);
     return now_;
+  }
+  /// The next value is the one that was set last.
+  void settle() noexcept {
+    now_ = goal_ = wanted();
+    left_ = 0;
   }
 
  private:

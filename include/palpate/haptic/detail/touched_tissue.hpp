@@ -59,6 +59,7 @@ class TouchedTissue {
   Status solved() const noexcept { return solved_; }
   RampedValue& friction() noexcept { return friction_; }
   const RampedValue& friction() const noexcept { return friction_; }
+  bool may_have_friction() const noexcept { return may_have_friction_; }
   const TissueView& view() const noexcept { return view_; }
   const ContactProblem& problem() const noexcept { return *problem_; }
   ContactProblem& problem() noexcept { return *problem_; }
@@ -85,6 +86,7 @@ class TouchedTissue {
   CoarseFacetReport coarse_facets_;
   std::vector<Touch> touches_;  // refer to tools_
   RampedValue friction_;
+  bool may_have_friction_;
   Status news_, solved_;
   std::uint64_t updates_ = 0;
   bool started_ = false;

@@ -43,7 +43,8 @@ PALPATE_INLINE TouchedTissue::TouchedTissue(const GroupMember& member, const Too
       tools_(make_contact_tools(tools, options)),
       problem_(prepared_problem(view_, tools_, contact_parameters(member, options.contact, tools.size()))),
       coarse_facets_(report_coarse_facets(view_.contact_surface(), radii_of(tools_).smallest)),
-      friction_(member.friction.value_or(options.contact.friction)) {
+      friction_(member.friction.value_or(options.contact.friction)),
+      may_have_friction_(friction_.wanted() > 0.0) {
   if (view_.contact_surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
@@ -128,6 +129,7 @@ PALPATE_INLINE void TouchedTissue::reset() noexcept {
   started_ = false;
   updates_ = 0;
   news_ = solved_ = {};
+  friction_.settle();
   for (Touch& touch : touches_) touch.reset();
   release();
 }
