@@ -5,6 +5,7 @@
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/haptic/detail/hand.hpp>
+#include <palpate/haptic/detail/require_index.hpp>
 #include <palpate/haptic/detail/shared_tools.hpp>
 #include <palpate/haptic/detail/tool_recovery.hpp>
 #include <palpate/haptic/detail/touched_tissue.hpp>
@@ -17,12 +18,6 @@ namespace palpate { inline namespace PALPATE_ABI {
 namespace detail {
 
 static_assert(Servo<HapticServo>);
-
-inline void require_index(std::size_t index, std::size_t count, const char* what) {
-  if (index < count) return;
-  raise(SetupErrorKind::index_out_of_range, std::string("the servo has ") + std::to_string(count) + ' ' + what +
-                                                (count == 1 ? "" : "s") + ", not number " + std::to_string(index));
-}
 
 inline ToolState unreadable() noexcept {
   ToolState s;

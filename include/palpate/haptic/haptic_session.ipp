@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/core/setup_error.hpp>
+#include <palpate/haptic/detail/require_index.hpp>
 #include <palpate/haptic/haptic_session.hpp>
 
 #include <cmath>
