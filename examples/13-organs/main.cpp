@@ -1,0 +1,118 @@
+// Example 13: several organs and instruments in one session.
+//
+//   example_13_organs
+//
+// A probe presses a liver that moves. A grasper takes hold of a gallbladder beside it and lifts it, and a blade cuts it
+// off at its base. All instruments touch all organs: one servo, one force per instrument.
+//
+//   1. A TissueGroup is what a servo or session takes in place of a tissue. Its tissues may have any types; each keeps
+//      its pose, its friction and its background work.
+//   2. Jaws are two tools on a joint for one device. Friction holds the tissue; `joint_torque` is what presses the jaws
+//      apart. Friction changes while the servo ticks.
+//   3. A blade cuts the tissues that can be cut; `detached_pieces` has what came off, for a physics engine.
+//
+// Here instruments follow a script and background work is done between ticks, so that every run is the same; in your
+// program they are devices of a HapticSession, with a BackgroundWorker per organ. The exit code is 1 when an instrument
+// had no force, the grip did not lift, or nothing was cut off.
+#include <palpate/cut.hpp>
+#include <palpate/palpate.hpp>
+#include <palpate/soft.hpp>
+#include <palpate/tools.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <vector>
+
+using namespace palpate;
+
+namespace {
+
+using Liver = HapticFEModel<Smoothed<Tet4>, NeoHookean, Implicit<QuasiNewton<>>>;
+using Gallbladder = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
+
+constexpr double density = 1060.0, reach = 25e-3;
+const Vector3 liver_size(80e-3, 60e-3, 20e-3), gallbladder_size(60e-3, 16e-3, 12e-3);
+const Vector3 beside(0.0, 80e-3, 0.0);  // the corner of the gallbladder
+
+/// The handle of the grasper: follows the script, and keeps the force on it.
+struct Handle {
+  ToolState read() noexcept { return state; }
+  Status write(const GatedForce& f) noexcept {
+    force = f.force();
+    return {};
+  }
+  DeviceLimits limits() const noexcept { return {.peak_force = 8.0, .continuous_force = 4.0, .stiffness = 2000.0}; }
+  void start() {}
+  void stop() noexcept {}
+  ToolState state;
+  Vector3 force = Vector3::Zero();
+};
+
+/// A jaw: a plate whose middle is `reach` from the pivot, parallel to the other one at an opening of 0.2.
+ConvexTool jaw(double side) {
+  constexpr double thickness = 1e-3, half_gap = 4.5e-3;
+  std::vector<Vector3> points;
+  for (const double x : {-reach - 6e-3, -reach + 6e-3})
+    for (const double y : {-5e-3, 5e-3}) {
+      const Vector3 closed(x, y, side * (half_gap + thickness));
+      points.push_back(Eigen::AngleAxisd(-0.1 * side, Vector3::UnitY()) * closed);
+    }
+  return {points, thickness};
+}
+
+/// The part of the way from `begin` to `end` at a time.
+double part(double time, double begin, double end) {
+  return std::clamp((time - begin) / (end - begin), 0.0, 1.0);
+}
+
+}  // namespace
+
+int main() {
+  Liver liver(box_tet4(liver_size, {10, 8, 4}), Scene().fix("z0").touch("z1"),
+              NeoHookean{.youngs_modulus = 5e3, .poisson_ratio = 0.45, .density = density});
+  Gallbladder gallbladder(box_tet4(gallbladder_size, {20, 6, 4}), Scene().fix("x0").touch("surface"),
+                          LinearElastic{.youngs_modulus = 10e3, .poisson_ratio = 0.4, .density = density});
+  gallbladder.set_pose(Eigen::Isometry3d(Eigen::Translation3d(beside)));
+  TissueGroup organs(liver);
+  organs.add(gallbladder, 0.2);  // friction of its own
+
+  Handle handle;
+  double opening = 0.7;  // a ButtonOpening, or the axis of a gripper, in your program
+  Jaws jaws(handle, JawJoint{.widest = 0.7, .stiffness = 20.0}, [&](const ToolState&) noexcept { return opening; });
+  const BladeTool blade{.edge = {0.0, 30e-3, 0.0}, .toughness = 20.0};
+  ServoOptions options;
+  options.devices = {DeviceLimits{}, jaws.first().limits(), jaws.second().limits(), DeviceLimits{}};
+  HapticServo servo(organs, {SphereTool{6e-3}, jaw(1.0), jaw(-1.0), blade}, options);
+
+  const Vector3 middle = beside + Vector3(50e-3 + reach, 0.5 * gallbladder_size[1], 0.5 * gallbladder_size[2]);
+  double most_on_probe = 0.0, most_on_blade = 0.0, grip = 0.0, lift = 0.0;
+  for (int tick = 0; tick < 1600; ++tick) {
+    const double time = 1e-3 * tick;
+    std::array<ToolState, 4> states;
+    states[0].position = Vector3(40e-3, 30e-3, liver_size[2] + 8e-3 - 6e-3 * part(time, 0.0, 0.3));
+    handle.state.position = middle + Vector3(0.0, 0.0, 6e-3 * part(time, 0.6, 1.0));
+    opening = 0.7 - 0.5 * part(time, 0.2, 0.5);
+    handle.state.time = handle.state.now = time;
+    states[3].position = beside + Vector3(15.2e-3, 0.5 * gallbladder_size[1], 18e-3 - 24e-3 * part(time, 1.05, 1.5));
+    for (ToolState* s : {&states[0], &states[3]}) s->time = s->now = time;
+    if (tick == 500) servo.set_friction(0.6, 1);
+    states[1] = jaws.first().read();
+    states[2] = jaws.second().read();
+    const auto forces = servo.tick(states);
+    jaws.first().write(forces[1]);
+    jaws.second().write(forces[2]);
+    if (tick % 10 == 9) liver.background_work();
+    if (tick % 16 == 15) gallbladder.process_cuts();
+    most_on_probe = std::max(most_on_probe, forces[0].force().norm());
+    most_on_blade = std::max(most_on_blade, forces[3].force().norm());
+    if (tick == 590) grip = jaws.joint_torque();
+    if (tick == 1000) lift = -handle.force[2];
+  }
+  while (gallbladder.process_cuts()) continue;
+  double mass = 0.0;
+  for (const DetachedPiece& piece : detached_pieces(gallbladder)) mass += piece.mass;
+  std::printf("probe %.3f N, grip %.1f N mm, lift %.3f N, blade %.3f N, %.1f g cut off\n", most_on_probe, 1e3 * grip,
+              lift, most_on_blade, 1e3 * mass);
+  return most_on_probe > 0.05 && grip > 1e-3 && lift > 5e-3 && most_on_blade > 0.02 && mass > 5e-3 ? 0 : 1;
+}
