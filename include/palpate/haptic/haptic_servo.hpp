@@ -66,8 +66,8 @@ class HapticServo {
 
   /// One tick: a force for every tool, in order; the span is valid until the next tick. States beyond the number of
   /// tools are ignored, missing ones count as unreadable. In a callback without a haptic loop set ToolState::now, so
-  /// that old poses fade the force. Never throws, allocates, locks or waits; bounded by contact capacity, iterations
-  /// and, when a list of points near the tools is rebuilt, the points in their reach.
+  /// that old poses fade the force. Never throws, allocates, locks or waits; bounded by contact capacity, iterations,
+  /// tissues and, when a list of points near the tools is rebuilt, the points in their reach.
   std::span<const GatedForce> tick(std::span<const ToolState> states) noexcept;
   /// The same for a session with one tool: its force, valid until the next tick.
   const GatedForce& tick(const ToolState& state) noexcept { return tick({&state, 1}).front(); }
