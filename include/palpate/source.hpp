@@ -50,6 +50,7 @@
 #include <palpate/device/simulated_device.ipp>
 #include <palpate/device/trajectory.ipp>
 #include <palpate/haptic/background_worker.ipp>
+#include <palpate/haptic/detail/device_gate.ipp>
 #include <palpate/haptic/detail/shared_tools.ipp>
 #include <palpate/haptic/detail/tool_input.ipp>
 #include <palpate/haptic/detail/tool_recovery.ipp>

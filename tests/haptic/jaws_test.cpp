@@ -10,6 +10,7 @@
 #include <palpate/testing/random.hpp>
 
 #include "contact/servo_session.hpp"
+#include "haptic/handle.hpp"
 #include "refused.hpp"
 
 #include "catch.hpp"
@@ -28,31 +29,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// A device whose states are functions of the tick; it keeps the last force.
-struct Handle {
-  ToolState read() noexcept {
-    ToolState s = path ? path(tick) : ToolState{};
-    s.time = s.now = 1e-3 * tick++;
-    return s;
-  }
-  Status write(const GatedForce& f) noexcept {
-    force = f;
-    ++writes;
-    return {};
-  }
-  DeviceLimits limits() const noexcept { return device; }
-  void start() { ++starts; }
-  void stop() noexcept { ++stops; }
-
-  std::function<ToolState(int)> path;
-  DeviceLimits device{.peak_force = 50.0,
-                      .continuous_force = 50.0,
-                      .stiffness = 4000.0,
-                      .peak_torque = 2.0,
-                      .rotational_stiffness = 20.0};
-  GatedForce force;
-  int tick = 0, writes = 0, starts = 0, stops = 0;
-};
+using test::Handle;
 
 /// An opening that the test sets.
 struct GivenOpening {

@@ -7,6 +7,7 @@
 #include <palpate/testing/random.hpp>
 
 #include "contact/servo_session.hpp"
+#include "haptic/handle.hpp"
 #include "refused.hpp"
 
 #include "catch.hpp"
@@ -22,30 +23,7 @@ namespace trocar_test {
 
 namespace {
 
-/// A device that the test moves; it keeps the last force.
-struct Handle {
-  ToolState read() noexcept {
-    state.time = state.now = 1e-3 * tick++;
-    return state;
-  }
-  Status write(const GatedForce& f) noexcept {
-    force = f;
-    return {};
-  }
-  DeviceLimits limits() const noexcept { return device; }
-  void start() { started = true; }
-  void stop() noexcept { started = false; }
-
-  ToolState state;
-  DeviceLimits device{.peak_force = 50.0,
-                      .continuous_force = 50.0,
-                      .stiffness = 4000.0,
-                      .peak_torque = 5.0,
-                      .rotational_stiffness = 200.0};
-  GatedForce force;
-  int tick = 0;
-  bool started = false;
-};
+using test::Handle;
 
 Quaternion<double> orientation(const ToolState& s) {
   return {s.orientation[0], s.orientation[1], s.orientation[2], s.orientation[3]};
@@ -238,7 +216,8 @@ TEST_CASE("a session feels tissue through a port", "[haptic][trocar][session]") 
   session.run({.duration = 0.2, .paced = false});
   const Vector3 force = session.snapshot().contact_force();
   CHECK(force[2] > 0.01);
-  CHECK_FALSE(handle.started);
+  CHECK(handle.starts == 1);
+  CHECK(handle.stops == 1);
 }
 
 TEST_CASE("ports that cannot be are refused", "[haptic][trocar][refused]") {

@@ -28,8 +28,8 @@ struct DetachedPiece {
 
 namespace detail {
 
-/// Adds an element of a piece: `at` its nodes where they are, `moments` the integrals of products of shape functions
-/// times the density.
+/// Adds an element of a piece: `at` its nodes relative to a point of the piece, `moments` the integrals of products of
+/// shape functions times the density.
 template <Element E>
 void add_element(const std::array<Vector3, E::nodes>& at, const ElementMass<E>& moments,
                  DetachedPiece& piece) noexcept {
@@ -45,18 +45,19 @@ void add_element(const std::array<Vector3, E::nodes>& at, const ElementMass<E>& 
   }
 }
 
-/// From moments about the origin to the centre of mass.
-inline void finish_moments(DetachedPiece& piece) noexcept {
+/// From moments about a point of the piece to the centre of mass.
+inline void finish_moments(const Vector3& point, DetachedPiece& piece) noexcept {
   piece.centre /= piece.mass;
-  const Vector3& c = piece.centre;
+  const Vector3 c = piece.centre;
   piece.inertia -= piece.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
   piece.inertia = (0.5 * (piece.inertia + piece.inertia.transpose())).eval();
+  piece.centre += point;
 }
 
-/// The faces of a piece without neighbour.
+/// The faces of a piece without neighbour. `point`: a workspace, -1 for every node; pieces have no node in common.
 template <Element E, class PositionOf>
-void add_surface(const CutTopology<E>& topology, PositionOf&& position_of, DetachedPiece& piece) {
-  std::vector<int> point(static_cast<std::size_t>(topology.mesh().node_count()), -1);
+void add_surface(const CutTopology<E>& topology, PositionOf&& position_of, std::vector<int>& point,
+                 DetachedPiece& piece) {
   const auto point_of = [&](NodeId node) {
     int& p = point[static_cast<std::size_t>(node)];
     if (p >= 0) return p;
@@ -97,21 +98,23 @@ std::vector<DetachedPiece> detached_pieces(HapticFEModel<E, M, Solver>& model) {
       return model.to_world() * Vector3(mesh.position(Index{node}) + node_vector(u, Index{known}));
     };
     const auto is_detached = [&](Index e) { return topology.state(e) == ElementState::detached; };
+    std::vector<int> point(static_cast<std::size_t>(mesh.node_count()), -1);
     for (detail::Fragment& fragment : detail::connected_fragments(topology, is_detached)) {
       DetachedPiece& piece = pieces.emplace_back();
+      const Vector3 origin = position_of(fragment.nodes.front());  // near: far from the world's, moments would cancel
       piece.elements = std::move(fragment.elements);
       std::ranges::sort(piece.elements);
       for (const Index e : piece.elements) {
         std::array<Vector3, E::nodes> at;
         for (int a = 0; a < E::nodes; ++a)
-          at[static_cast<std::size_t>(a)] = position_of(static_cast<NodeId>(mesh.element_node(e, a)));
+          at[static_cast<std::size_t>(a)] = position_of(static_cast<NodeId>(mesh.element_node(e, a))) - origin;
         const double density = body.density[body.region_of(e)];
         detail::add_element<E>(at, density * detail::element_mass<E>(element_nodes<E>(mesh, e)), piece);
       }
       if (!(piece.mass > 0.0))
         raise(SetupErrorKind::bad_density, "a detached piece has no mass", "Give the material a density");
-      detail::finish_moments(piece);
-      detail::add_surface(topology, position_of, piece);
+      detail::finish_moments(origin, piece);
+      detail::add_surface(topology, position_of, point, piece);
     }
   });
   return pieces;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/haptic/force_gate.hpp>
+#include <palpate/haptic/detail/device_gate.hpp>
 
 #include <array>
 #include <concepts>
@@ -66,7 +66,7 @@ class JawPair {
   ToolState state(double side) const noexcept;
   DeviceLimits limits() const noexcept;
   void set(std::size_t jaw, const GatedForce& force) noexcept { force_[jaw] = force; }
-  void set_now(double now) noexcept { now_ = now; }
+  void set_now(double now) noexcept { gate_.set_now(now); }
   /// The force for the device; none where no state was taken since the last one: the loop has ended.
   GatedForce sum() noexcept;
   double opening() const noexcept { return opening_; }
@@ -76,11 +76,8 @@ class JawPair {
  private:
   JawJoint joint_;
   DeviceLimits device_;
-  ForceGate gate_;
-  ToolState state_;
-  double opening_;
-  double joint_torque_ = 0.0, now_ = std::numeric_limits<double>::quiet_NaN();
-  bool has_state_ = false;
+  DeviceGate gate_;
+  double opening_, joint_torque_ = 0.0;
   std::array<GatedForce, 2> force_;
 };
 
@@ -117,10 +114,7 @@ class Jaws {
     void note(Status status, double now = std::numeric_limits<double>::quiet_NaN()) noexcept {
       if (number_ > 0) return;
       jaws_->pair_.set_now(now);
-      if constexpr (requires(Device & d) { d.note(status, now); })
-        jaws_->device_->note(status, now);
-      else if constexpr (requires(Device & d) { d.note(status); })
-        jaws_->device_->note(status);
+      detail::forward_note(*jaws_->device_, status, now);
     }
     /// Forwards that of a replay.
     bool restarts() const noexcept requires requires(const Device& d) { d.restarts(); }
@@ -165,8 +159,7 @@ class Jaws {
  private:
   void read() noexcept {
     const ToolState state = device_->read();
-    if constexpr (requires(const Device& d) { d.restarts(); })
-      if (std::as_const(*device_).restarts()) pair_.reset();
+    if (detail::has_restarted(*device_)) pair_.reset();
     pair_.take(state, opening_(state));
   }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -49,17 +48,16 @@ inline JawJoint checked(JawJoint joint) {
 }
 
 PALPATE_INLINE JawPair::JawPair(const JawJoint& joint, const DeviceLimits& device, double rate)
-    : joint_(checked(joint)), device_(device), gate_(ForceLimits::from(device, rate)), opening_(joint.widest) {}
+    : joint_(checked(joint)), device_(device), gate_(device, rate), opening_(joint.widest) {}
 
 PALPATE_INLINE void JawPair::take(const ToolState& state, double opening) noexcept {
-  state_ = state;
-  has_state_ = true;
+  gate_.take(state);
   if (!std::isnan(opening)) opening_ = std::clamp(opening, 0.0, joint_.widest);  // else the last one
 }
 
 PALPATE_INLINE ToolState JawPair::state(double side) const noexcept {
-  ToolState s = state_;
-  const auto& [w, x, y, z] = state_.orientation;
+  ToolState s = gate_.state();
+  const auto [w, x, y, z] = s.orientation;
   const Quaternion<double> handle{w, x, y, z};
   const Quaternion<double> q = handle * quaternion_by(Vector3(0.5 * side * opening_ * joint_.axis));
   s.position += rotation_matrix(handle) * joint_.pivot;
@@ -81,31 +79,23 @@ PALPATE_INLINE DeviceLimits JawPair::limits() const noexcept {
 
 /// Torques of the jaws are about the pivot.
 PALPATE_INLINE GatedForce JawPair::sum() noexcept {
-  if (!std::exchange(has_state_, false)) {
-    gate_.reset();
-    joint_torque_ = 0.0;
-    return {};
-  }
-  const auto& [w, x, y, z] = state_.orientation;
+  joint_torque_ = 0.0;
+  if (gate_.lacks_state()) return {};
+  const auto& [w, x, y, z] = gate_.state().orientation;
   const Matrix3 handle = rotation_matrix({w, x, y, z});
   const Vector3 force = force_[0].force() + force_[1].force();
   const Vector3 torque = force_[0].torque() + force_[1].torque() + cross(handle * joint_.pivot, force);
   const double apart = 0.5 * (handle * joint_.axis).dot(force_[0].torque() - force_[1].torque());
-  joint_torque_ = std::isfinite(apart) ? apart : 0.0;
-  const double now = std::isfinite(state_.now) ? state_.now : std::isfinite(now_) ? now_ : state_.time;
-  GatedForce sum = gate_.apply(force, torque, now, state_.time, state_.valid, false);
-  sum.status |= force_[0].status | force_[1].status;
-  sum.error = force_[0].error.bound < force_[1].error.bound ? force_[1].error : force_[0].error;
-  return sum;
+  if (std::isfinite(apart)) joint_torque_ = apart;
+  GatedForce given = force_[0].error.bound < force_[1].error.bound ? force_[1] : force_[0];
+  given.status = force_[0].status | force_[1].status;
+  return gate_.pass(force, torque, given, false);
 }
 
 PALPATE_INLINE void JawPair::reset() noexcept {
   gate_.reset();
   force_ = {};
   joint_torque_ = 0.0;
-  now_ = std::numeric_limits<double>::quiet_NaN();
-  has_state_ = false;
-  state_.valid = false;
 }
 
 }  // namespace detail

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/haptic_device.hpp>
-#include <palpate/haptic/force_gate.hpp>
+#include <palpate/haptic/detail/device_gate.hpp>
 
 #include <limits>
 #include <optional>
@@ -35,7 +35,7 @@ class PortedShaft {
   void require_stable(double rate) const;
 
   void take(const ToolState& handle) noexcept;
-  void set_now(double now) noexcept { now_ = now; }
+  void set_now(double now) noexcept { gate_.set_now(now); }
   void reset() noexcept;
 
   // FulcrumDevice
@@ -54,20 +54,17 @@ class PortedShaft {
 
  private:
   bool lacks_state() noexcept;
-  GatedForce pass(const Vector3& force, const Vector3& torque, const GatedForce& given, bool restart) noexcept;
   double least_outside() const noexcept { return port_.length / (1.0 + port_.longest_lever); }
   /// Stiffness of the port about the handle [N m/rad].
   double about_handle() const noexcept { return port_.stiffness * port_.length * port_.length; }
 
   TrocarPort port_;
   DeviceLimits device_;
-  ForceGate gate_;
-  ToolState state_;    // of the handle
+  DeviceGate gate_;    // with the state of the handle
   Vector3 direction_;  // of the shaft, scene
   double outside_, inside_, deviation_ = 0.0;
   double nearness_ = 1.0;  // of the handle: its distance from the port, relative to the least outside, at most 1
-  double now_ = std::numeric_limits<double>::quiet_NaN();
-  bool has_state_ = false, has_direction_ = false, in_port_ = false;
+  bool has_direction_ = false, in_port_ = false;
 };
 
 /// A device around another one, with a port.
@@ -85,10 +82,7 @@ class DeviceAtPort {
   /// For the gate, and for a device that keeps a log.
   void note(Status status, double now = std::numeric_limits<double>::quiet_NaN()) noexcept {
     shaft_.set_now(now);
-    if constexpr (requires(Device & d) { d.note(status, now); })
-      device_->note(status, now);
-    else if constexpr (requires(Device & d) { d.note(status); })
-      device_->note(status);
+    forward_note(*device_, status, now);
   }
   /// Forwards that of a replay.
   bool restarts() const noexcept requires requires(const Device& d) { d.restarts(); }
@@ -101,8 +95,7 @@ class DeviceAtPort {
   DeviceLimits device_limits() const noexcept { return std::as_const(*device_).limits(); }
   ToolState read_handle() noexcept {
     const ToolState state = device_->read();
-    if constexpr (requires(const Device& d) { d.restarts(); })
-      if (std::as_const(*device_).restarts()) shaft_.reset();
+    if (has_restarted(*device_)) shaft_.reset();
     shaft_.take(state);
     return state;
   }

@@ -55,7 +55,7 @@ inline Quaternion<double> shortest_rotation(const Vector3& from, const Vector3& 
 PALPATE_INLINE PortedShaft::PortedShaft(const TrocarPort& port, const DeviceLimits& device, double rate)
     : port_(checked(port)),
       device_(device),
-      gate_(ForceLimits::from(device, rate)),
+      gate_(device, rate),
       direction_(port_.shaft),
       outside_(0.5 * port_.length),
       inside_(0.5 * port_.length) {}
@@ -68,9 +68,8 @@ PALPATE_INLINE void PortedShaft::require_stable(double rate) const {
 }
 
 PALPATE_INLINE void PortedShaft::take(const ToolState& handle) noexcept {
-  state_ = handle;
+  gate_.take(handle);
   if (!handle.valid) has_direction_ = false;
-  has_state_ = true;
 }
 
 /// The side of the port on which the handle is does not change: beyond the port it is at it.
@@ -98,7 +97,7 @@ PALPATE_INLINE GatedForce PortedShaft::to_handle(const GatedForce& at_tip) noexc
   const Vector3 &f = at_tip.force(), &u = direction_;
   const double along = u.dot(f), ratio = inside_ / outside_;
   const Vector3 force = along * u - ratio * (f - along * u) - cross(at_tip.torque(), u) / outside_;
-  GatedForce at_handle = pass(nearness_ * force, Vector3(0.0, 0.0, 0.0), at_tip, false);
+  GatedForce at_handle = gate_.pass(nearness_ * force, Vector3(0.0, 0.0, 0.0), at_tip, false);
   if (nearness_ < 1.0) at_handle.status.set(StatusFlag::degraded_model);
   return at_handle;
 }
@@ -128,12 +127,13 @@ PALPATE_INLINE DeviceLimits PortedShaft::limits_beside_port() const noexcept {
 /// force ramps up when the shaft enters.
 PALPATE_INLINE GatedForce PortedShaft::with_port(const GatedForce& at_handle) noexcept {
   if (lacks_state()) return {};
-  const auto& [w, x, y, z] = state_.orientation;
+  const ToolState& handle = gate_.state();
+  const auto& [w, x, y, z] = handle.orientation;
   const Vector3 axis = rotation_matrix({w, x, y, z}) * port_.shaft;
-  const double along = axis.dot(port_.position - state_.position);
-  const Vector3 arm = along * axis, offset = state_.position + arm - port_.position;
+  const double along = axis.dot(port_.position - handle.position);
+  const Vector3 arm = along * axis, offset = handle.position + arm - port_.position;
   const bool was_in_port = in_port_;
-  in_port_ = state_.valid && along > 0.0 && along < port_.length && (was_in_port || offset.norm() <= port_.radius);
+  in_port_ = handle.valid && along > 0.0 && along < port_.length && (was_in_port || offset.norm() <= port_.radius);
   deviation_ = in_port_ ? offset.norm() : 0.0;
   Vector3 force = at_handle.force(), torque = at_handle.torque();
   if (in_port_) {
@@ -141,31 +141,20 @@ PALPATE_INLINE GatedForce PortedShaft::with_port(const GatedForce& at_handle) no
     force += spring;
     torque += cross(arm, spring);
   }
-  return pass(force, torque, at_handle, in_port_ != was_in_port);
+  return gate_.pass(force, torque, at_handle, in_port_ != was_in_port);
 }
 
-/// Where no state was taken since the last force, the loop has ended: the device gets none.
 PALPATE_INLINE bool PortedShaft::lacks_state() noexcept {
-  if (std::exchange(has_state_, false)) return false;
+  if (!gate_.lacks_state()) return false;
   reset();
   return true;
-}
-
-PALPATE_INLINE GatedForce PortedShaft::pass(const Vector3& force, const Vector3& torque, const GatedForce& given,
-                                            bool restart) noexcept {
-  const double now = std::isfinite(state_.now) ? state_.now : std::isfinite(now_) ? now_ : state_.time;
-  GatedForce passed = gate_.apply(force, torque, now, state_.time, state_.valid, restart);
-  passed.status |= given.status;
-  passed.error = given.error;
-  return passed;
 }
 
 PALPATE_INLINE void PortedShaft::reset() noexcept {
   gate_.reset();
   deviation_ = 0.0;
   nearness_ = 1.0;
-  now_ = std::numeric_limits<double>::quiet_NaN();
-  has_state_ = has_direction_ = in_port_ = false;
+  has_direction_ = in_port_ = false;
 }
 
 }  // namespace detail

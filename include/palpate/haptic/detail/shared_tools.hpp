@@ -20,9 +20,9 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 struct SharedTools {
   /// The state of a tool for tissue number `own`: its target moved by the newest forces of the others on it.
   ToolState (*moved)(std::span<TouchedTissue>, std::size_t own, std::size_t tool, const ToolState&) noexcept;
-  /// Solves the contact of all tissues, up to a relative change of forces and torques. Where these would change by more
-  /// than 5 % in another round, the tissues report solver_not_converged. At most 6 rounds, all but the first one with
-  /// at most two linearisations.
+  /// Solves the contact of all tissues, up to a relative change of forces and torques. Where further rounds would
+  /// change these by more than 5 % in all, the tissues report solver_not_converged. At most 6 rounds, all but the first
+  /// one with at most two linearisations.
   void (*solve)(std::span<TouchedTissue>, double tolerance) noexcept;
 };
 

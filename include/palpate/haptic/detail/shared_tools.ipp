@@ -120,18 +120,22 @@ class Extrapolation {
 
 inline void solve_shared(std::span<TouchedTissue> tissues, double tolerance) noexcept {
   constexpr double flagged = 0.05;
+  constexpr double small_rest =
+      5.0;  // tolerances that may be left: where changes hardly fall, less would take all rounds
   constexpr int most_rounds = 5, linearisations = 2;
   for (TouchedTissue& tissue : tissues) tissue.begin();
   for (TouchedTissue& tissue : tissues) tissue.iterate();
   Extrapolation extrapolation;
-  double left = infinity;
+  double left = infinity, rest = infinity;
   std::size_t first = tissues.size();  // the tissue whose changes are extrapolated
   for (int round = 0; round < most_rounds && left > tolerance; ++round) {
-    left = 0.0;
+    left = rest = 0.0;
     for (std::size_t k = 0; k < tissues.size(); ++k) {
       const TargetChange change = change_of_targets(tissues, k);
-      const double expected = std::max(change.relative, 0.2 * change.relative * extrapolation.sum());
+      const double all_changes = change.relative * extrapolation.sum();
+      const double expected = std::max(change.relative, all_changes / small_rest);
       left = std::max(left, expected);
+      rest = std::max(rest, all_changes);
       if (!(expected > tolerance)) continue;
       if (first == tissues.size()) first = k;
       const double factor = k == first ? extrapolation.factor(change) : 1.0;
@@ -145,7 +149,7 @@ inline void solve_shared(std::span<TouchedTissue> tissues, double tolerance) noe
   }
   for (TouchedTissue& tissue : tissues) {
     tissue.end();
-    if (left > flagged) tissue.set_unsolved();
+    if (rest > flagged) tissue.set_unsolved();
   }
 }
 
