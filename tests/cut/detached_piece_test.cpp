@@ -90,6 +90,10 @@ TEST_CASE("a layer that is cut off has the mass, inertia and surface of a box", 
   CHECK(is_closed(piece));
   CHECK(volume_of(piece) == Catch::Approx(mass / density).epsilon(1e-10));
   CHECK(piece.elements.size() == block().elements.size() / 3);
+  Eigen::Isometry3d far_away = pose;  // moments about the world's origin would cancel
+  far_away.pretranslate(Vector3(1e4, -2e4, 0.0));
+  tissue.set_pose(far_away);
+  CHECK((detached_pieces(tissue).front().inertia - inertia).norm() <= 1e-6 * inertia.norm());
   CHECK(piece.points.size() == piece.nodes.size());
 }
 

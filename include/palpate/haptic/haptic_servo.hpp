@@ -132,6 +132,9 @@ class HapticServo {
   void solve() noexcept;
   void recover() noexcept;
   void add_errors(detail::Hand& hand, const Vector3& force) noexcept;
+  bool is_pressed(std::size_t tool) const noexcept;
+  Status status_of(std::size_t tool) noexcept;
+  double time_of(std::size_t tool) const noexcept;
   void pass(detail::Hand& hand) noexcept;
   void publish() noexcept;
 

@@ -248,20 +248,54 @@ PALPATE_INLINE void HapticServo::add_errors(detail::Hand& hand, const Vector3& f
   }
 }
 
-/// Passes the force of all tissues through the energy tank and the gate; the tank then receives the gate's output. A
-/// tool has the flags of the tissues that press it, or of all where none does, and of all of them those of its input
-/// and of the solution.
+PALPATE_INLINE bool HapticServo::is_pressed(std::size_t tool) const noexcept {
+  for (const detail::TouchedTissue& tissue : tissues_)
+    if (tissue.touch(tool).presses()) return true;
+  return false;
+}
+
+/// The flags of the tissues that press a tool, or of all where none does, and of all tissues those of its input and of
+/// the solution. After the errors are estimated.
+PALPATE_INLINE Status HapticServo::status_of(std::size_t tool) noexcept {
+  const bool is_pressed_by_any = is_pressed(tool);
+  Status status;
+  for (detail::TouchedTissue& tissue : tissues_) {
+    const detail::Touch& touch = tissue.touch(tool);
+    const Status own = tissue.news() | tissue.status_of(tool, stale_tissue_after_);
+    status |= tissue.solved();
+    if (touch.presses() || !is_pressed_by_any) {
+      status |= own;
+      continue;
+    }
+    status |= touch.input.status();
+    if (touch.blade) status |= touch.blade->status();
+    if (touch.lost_contact) status.set(StatusFlag::lost_contact);
+  }
+  return status;
+}
+
+/// Time of the state of a tool for its gate: that of a tissue stops when it is not updated. Where there are several,
+/// only those count that press the tool.
+PALPATE_INLINE double HapticServo::time_of(std::size_t tool) const noexcept {
+  double time = tissues_.front().touch(tool).input.time();
+  for (const detail::TouchedTissue& tissue : tissues_) {
+    const detail::Touch& touch = tissue.touch(tool);
+    if (tissue.view().has_updates() && (touch.presses() || tissues_.size() == 1))
+      time = std::min(time, touch.input.stamp(stale_tissue_after_));
+  }
+  return time;
+}
+
+/// Passes the force of all tissues through the energy tank and the gate; the tank then receives the gate's output.
 PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
   const std::size_t i = hand.number;
   const detail::ToolInput& input = tissues_.front().touch(i).input;
   Vector3 force(0.0, 0.0, 0.0), torque(0.0, 0.0, 0.0);
-  double most = -1.0, time = infinity;
-  bool is_readable = true, has_restarted = false, is_pressed = false;
-  for (const detail::TouchedTissue& tissue : tissues_) is_pressed = is_pressed || tissue.touch(i).presses();
-  Status status;
+  double most = -1.0;
+  bool is_readable = true, has_restarted = false;
   for (std::size_t k = 0; k < tissues_.size(); ++k) {
     detail::TouchedTissue& tissue = tissues_[k];
-    detail::Touch& touch = tissue.touch(i);
+    const detail::Touch& touch = tissue.touch(i);
     tissue.estimate_error(i, corrected_force_);
     const Vector3 own = touch.correction * tissue.force_on(i);
     force += own;
@@ -269,19 +303,7 @@ PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
     if (own.norm() > most && (!touch.is_blade || touch.blade)) most = own.norm(), hand.tissue = k;
     is_readable = is_readable && touch.input.readable();
     has_restarted = has_restarted || touch.input.restarted();
-    status |= tissue.solved();
-    const Status of_tissue = tissue.news() | tissue.status_of(i, stale_tissue_after_);
-    if (is_pressed && !touch.presses()) {
-      status |= touch.input.status();
-      if (touch.blade) status |= touch.blade->status();
-      if (touch.lost_contact) status.set(StatusFlag::lost_contact);
-      continue;
-    }
-    status |= of_tissue;
-    if (tissue.view().has_updates() && (touch.presses() || tissues_.size() == 1))
-      time = std::min(time, touch.input.stamp(stale_tissue_after_));
   }
-  time = std::min(time, input.time());
   add_errors(hand, force);
   Status limited;
   if (hand.tank) {
@@ -289,9 +311,9 @@ PALPATE_INLINE void HapticServo::pass(detail::Hand& hand) noexcept {
     force = hand.tank->limit(force, tissues_.front().device_position(i), input.time(), limited);
     torque *= hand.tank->gain();
   }
-  hand.force = hand.gate.apply(force, torque, input.now(), time, is_readable, has_restarted);
+  hand.force = hand.gate.apply(force, torque, input.now(), time_of(i), is_readable, has_restarted);
   if (hand.tank) hand.tank->gave(hand.force.force());
-  hand.force.status |= status | limited;
+  hand.force.status |= status_of(i) | limited;
   hand.force.error = hand.error;
 }
 
