@@ -28,6 +28,8 @@
 #include <palpate/contact/detail/contact_rows.ipp>
 #include <palpate/contact/detail/contact_rows_directions.ipp>
 #include <palpate/contact/detail/contact_samples.ipp>
+#include <palpate/contact/detail/interface_problem.ipp>
+#include <palpate/contact/detail/interface_rows.ipp>
 #include <palpate/contact/detail/point_levels.ipp>
 #include <palpate/contact/detail/proxy_motion.ipp>
 #include <palpate/contact/detail/row_compliance.ipp>
@@ -38,6 +40,7 @@
 #include <palpate/contact/grasp.ipp>
 #include <palpate/contact/subfacet_compliance.ipp>
 #include <palpate/contact/tools.ipp>
+#include <palpate/contact/touching_tissues.ipp>
 #include <palpate/core/executor.ipp>
 #include <palpate/core/rigid_motion.ipp>
 #include <palpate/core/setup_error.ipp>

@@ -9,6 +9,7 @@
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/cuttable_moving.hpp>
+#include <palpate/organs.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/soft.hpp>
 #include <palpate/tools.hpp>

@@ -103,6 +103,7 @@ class ContactSurface {
   /// Sets what is known about the other errors of a linear model.
   void set_model_error(detail::LinearModelError error) noexcept { model_error_ = std::move(error); }
   const ForceAccuracy* force_accuracy() const noexcept { return accuracy_.get(); }
+  const std::shared_ptr<const ForceAccuracy>& shared_force_accuracy() const noexcept { return accuracy_; }
   const detail::LinearModelError& model_error() const noexcept { return model_error_; }
   /// sqrt(2 area): of half a square, the side of that square [m].
   double facet_length(int t) const noexcept;

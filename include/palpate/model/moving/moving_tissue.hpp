@@ -12,7 +12,7 @@
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/contact_springs.hpp>
 #include <palpate/model/moving/detail/force_agreement.hpp>
-#include <palpate/model/moving/detail/near_compliance.hpp>
+#include <palpate/contact/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/split_vertices.hpp>
 #include <palpate/model/moving/detail/surface_stretch.hpp>
@@ -85,6 +85,15 @@ class MovingTissue : public ModelBase {
   void report_failed(bool failed) noexcept { failed_work_.store(failed, std::memory_order_relaxed); }
   /// The motion; for the stepping thread.
   const TissueMotion& motion() const noexcept { return *motion_; }
+
+  // The thread that steps, between two steps: for contact with other tissues (TouchingTissues)
+
+  /// Forces of other tissues on the surface, one per vertex, which act from the next step on besides those of tools.
+  /// Allocates at the first call.
+  void set_contact_forces(std::span<const VertexForce> forces);
+  /// The surface after the last step without the forces on it, and its compliance. Valid until the next step.
+  const ContactSurface& newest_surface() const noexcept { return newest().surface; }
+  Matrix3 newest_compliance(int i, int j) const noexcept { return evaluate(newest(), i, j); }
 
   // Any thread but the one that ticks
 
@@ -235,6 +244,12 @@ class MovingTissue : public ModelBase {
     std::uint64_t number = 0;                      // of the surface: changes before it
     std::shared_ptr<ContactProblem> contact;
   };
+  /// Of the last step; before the first one that of the set-up.
+  const View& newest() const noexcept { return newest_ != nullptr ? *newest_ : views_.front(); }
+  /// The forces of the last tick and of other tissues.
+  const Forces& given() const noexcept { return others_ ? others_->all : pressing_.front(); }
+  void add_others() noexcept;
+
   /// A view of all vertices, without surface, data of a step and room for the compliance near the contacts.
   View make_view() const;
 
@@ -267,6 +282,7 @@ class MovingTissue : public ModelBase {
   /// Takes the newest forces of a tick; whether there are new ones. One before a reset may name vertices of cuts that
   /// the reset has dropped.
   bool take_forces() noexcept;
+  void drop_gone() noexcept;
   void start_secants();
   void list_every_vertex();
   std::span<const int> near_vertices() const noexcept;
@@ -310,9 +326,16 @@ class MovingTissue : public ModelBase {
   std::atomic<bool> slow_{false}, failed_work_{false};
   TissueClaim claim_;
   TripleBuffer<View> views_;
+  const View* newest_ = nullptr;  // published last: not written before the step after the next one
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;
-  std::vector<Triangle> triangles_;  // of the surface
+  struct OtherForces {
+    std::vector<VertexForce> item;  // of other tissues
+    bool changed = true;
+    Forces all;  // with those of the last tick
+  };
+  std::unique_ptr<OtherForces> others_;  // null while no other tissue has touched this one
+  std::vector<Triangle> triangles_;      // of the surface
   std::uint64_t views_made_ = 0;
   std::uint64_t revision_ = 0;
   Status ticked_;                     // of the last end_tick

@@ -123,17 +123,17 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
   report_failed(false);
   if (!prepare_step()) return {};
   const bool is_new = take_forces();
-  if (is_new) agreement_.add({pressing_.front().item.data(), pressing_.front().count});
+  if (is_new) agreement_.add({given().item.data(), given().count});
   springs_.set_stiffness(agreement_.spring_stiffness());
   full_.setZero();
   if (!has_springs_) add(used_, -1.0, full_);
-  if (is_new || pressing_.front().number != changed_.number) set_springs(pressing_.front());
+  if (is_new || given().number != changed_.number) set_springs(given());
   const bool had_springs = std::exchange(has_springs_, !springs_.empty());
-  if (!has_springs_) add(pressing_.front(), 1.0, full_);
+  if (!has_springs_) add(given(), 1.0, full_);
   const bool same = !had_springs && !has_springs_ && full_.isZero(0.0);
   const bool corrected = same || motion_->correct(full_) || steps_ == 0;
   Forces before = used_;
-  used_ = pressing_.front();
+  used_ = given();
   if (!motion_->is_static()) springs_.read(motion_->displacement(), {used_.item.data(), used_.count});
   // With a history, the correction changes the displacement by the change of forces alone; a step also by creep.
   if (motion_->is_quasi_static() && !motion_->is_static() && corrected) record_pair(before, 0.0);
@@ -161,14 +161,51 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
 }
 
 PALPATE_INLINE bool MovingTissue::take_forces() noexcept {
-  const bool is_new = pressing_.update();
+  const bool is_new = pressing_.update() || (others_ && others_->changed);
+  drop_gone();
+  if (others_ && is_new) add_others();
+  return is_new;
+}
+
+/// Forces on vertices that a reset has dropped since the tick.
+PALPATE_INLINE void MovingTissue::drop_gone() noexcept {
   Forces& given = pressing_.front();
-  if (given.number == changed_.number) return is_new;
+  if (given.number == changed_.number) return;
   const auto is_gone = [&](int v) { return vertex(v) >= nodes_.size(); };
   detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
   detail::drop_items(given.pressed.item, given.pressed.count, is_gone);
   detail::drop_items(given.near_vertices.item, given.near_vertices.count, is_gone);
-  return is_new;
+}
+
+PALPATE_INLINE void MovingTissue::set_contact_forces(std::span<const VertexForce> forces) {
+  if (!others_) others_ = std::make_unique<OtherForces>();
+  others_->item.assign(forces.begin(), forces.end());
+  others_->changed = true;
+}
+
+/// Where there is no room for the points, the forces act as loads.
+PALPATE_INLINE void MovingTissue::add_others() noexcept {
+  Forces& all = others_->all;
+  all = pressing_.front();
+  others_->changed = false;
+  if (all.view == nullptr) {  // before the first tick
+    all.view = &newest();
+    all.number = changed_.number;
+  }
+  bool has_room = (all.points > 0 || all.count == 0) && all.points + others_->item.size() <= most_points;
+  const std::size_t ticked = all.count;
+  for (const VertexForce& f : others_->item) {
+    const auto end = all.item.begin() + static_cast<std::ptrdiff_t>(ticked);
+    const auto same = std::find_if(all.item.begin(), end, [&](const VertexForce& g) { return g.vertex == f.vertex; });
+    if (same != end)
+      same->force += f.force;
+    else if (all.count < most_forces)
+      all.item[all.count++] = f;
+    else
+      has_room = false;
+    if (has_room) all.point[all.points++] = {{f.vertex, f.vertex, f.vertex}, {1.0, 0.0, 0.0}, f.force};
+  }
+  if (!has_room) all.points = 0;
 }
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
@@ -279,6 +316,7 @@ PALPATE_INLINE void MovingTissue::restart() {
   keep_loads(scene().gravity(), others);
   pressing_.update();
   pressing_.front() = {};  // of a session before the reset
+  others_.reset();
   used_ = {};
   springs_.clear();
   agreement_.clear();
@@ -512,11 +550,11 @@ PALPATE_INLINE std::span<const int> MovingTissue::near_vertices() const noexcept
 /// By their energy: where parts are stiff, forces that hardly matter go from point to point.
 PALPATE_INLINE void MovingTissue::compare_forces(const std::vector<Matrix3>& rotation) noexcept {
   if (springs_.empty()) return agreement_.compare(0.0, 0.0, false);
-  const Forces& given = pressing_.front();  // in the order of used_
+  const Forces& now = given();  // in the order of used_
   std::array<Vector3, most_forces> force, difference;
   for (std::size_t k = 0; k < used_.count; ++k) {
     const Matrix3 back = rotation[vertex(used_.item[k])].transpose();
-    force[k] = back * given.item[k].force.in_model_axes();
+    force[k] = back * now.item[k].force.in_model_axes();
     difference[k] = force[k] - back * used_.item[k].force.in_model_axes();
   }
   double of_difference = 0.0, of_force = 0.0;
@@ -547,6 +585,7 @@ PALPATE_INLINE void MovingTissue::publish(Status status) noexcept {
   compare_forces(view.rotation);
   view.status = status | changed_.status;
   if (agreement_.is_poor()) view.status.set(StatusFlag::solver_not_converged);
+  newest_ = &view;
   views_.publish();
   drawn = motion_->displacement();
   drawn_.publish();

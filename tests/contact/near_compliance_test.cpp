@@ -1,7 +1,7 @@
 #include <palpate/haptic/haptic_servo.hpp>
 #include <palpate/material/neo_hookean.hpp>
 #include <palpate/mesh/generators_box.hpp>
-#include <palpate/model/moving/detail/near_compliance.hpp>
+#include <palpate/contact/detail/near_compliance.hpp>
 #include <palpate/model/moving/quasi_newton.hpp>
 
 #include <palpate/testing/random.hpp>

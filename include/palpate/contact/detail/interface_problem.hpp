@@ -1,0 +1,103 @@
+// The contact between deformable bodies: one complementarity problem for all of them.
+#pragma once
+
+#include <palpate/contact/detail/complementarity.hpp>
+#include <palpate/contact/detail/interface_rows.hpp>
+#include <palpate/contact/detail/interface_tissue.hpp>
+
+#include <span>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+struct InterfaceLimits {
+  int capacity = 512;
+  int maximum_iterations = 8;
+  double tolerance = 1e-3;  ///< of the displacement between two linearisations
+  bool self_contact = false;
+};
+
+/// Finds the forces between bodies whose compliance is known, so that none enters another one (Signorini's conditions
+/// on mortar gaps). W = sum of J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals
+/// and weights are those of the deformed surfaces: the problem is solved again until these stay. Rows that hardly
+/// change keep their columns J C. Allocates; for a background thread.
+class InterfaceProblem {
+ public:
+  /// The tissues must outlive it. The compliance columns of all their vertices are available.
+  InterfaceProblem(std::vector<InterfaceTissue> tissues, const InterfaceLimits& limits);
+
+  /// For a present surface and pose of a tissue, under these forces of tools.
+  void load(std::size_t body, std::span<const VertexForce> tools);
+  /// Finds the forces for these loads. Flags solver_not_converged, degraded_model (more rows than the capacity),
+  /// large_displacement (bodies that overlap, without forces, by a large part of their thickness) and lost_contact (a
+  /// vertex is inside another body).
+  Status solve();
+
+  struct Row {
+    InterfaceRow row;
+    double force = 0.0;                             ///< >= 0 [N]
+    double present = 0.0;                           ///< the same for the forces of tools since: see `follow`
+    double gap = 0.0;                               ///< without the forces of rows [m]
+    std::array<std::vector<double>, 2> response{};  ///< C J^T of both bodies, 3 per vertex [m/N]; of one where it
+                                                    ///< touches itself
+    bool stale = false;                             ///< whether a body has another compliance since
+    double response_of(std::size_t side, int vertex, const Vector3& direction) const noexcept {
+      const double* const u = response[side].data() + 3 * vertex;
+      return u[0] * direction[0] + u[1] * direction[1] + u[2] * direction[2];
+    }
+    /// Of response; -1 for a body that is not part of it.
+    int side_of(int body) const noexcept { return row.key.body == body ? 0 : row.key.other == body ? 1 : -1; }
+  };
+  std::span<const Row> rows() const noexcept { return rows_; }
+  /// The surface under the forces of tools, without those of rows, model frame [m].
+  std::span<const Vector3> base(std::size_t body) const noexcept { return bodies_[body].base; }
+  /// Displacement by the rows' forces, 3 per vertex, model frame [m].
+  void displacement(std::size_t body, std::vector<double>& u) const;
+  /// What a change of the forces of tools does to the rows' forces, while the same ones press: `pushed` is the sum of
+  /// Z f over the changes of all bodies. Of all changes since `solve`; until the next one.
+  void follow(const VectorX& pushed) noexcept;
+  /// The rows' forces on the vertices of a body, as `follow` has them.
+  void forces(std::size_t body, std::vector<VertexForce>& forces) const;
+  /// While the rows that press stay closed, a body has the compliance C_ij - Z_i^T Z_j. Z has as many rows as press;
+  /// the three columns of every vertex are contiguous. O(rows^2 x vertices).
+  int pressing() const noexcept { return static_cast<int>(pressing_.size()); }
+  void restraint(std::size_t body, std::vector<double>& z);
+
+ private:
+  struct Body {
+    InterfaceTissue tissue;
+    Eigen::Isometry3d pose;
+    std::vector<Vector3> base{}, now{};  // under the loads of tools, model frame; with rows, world frame
+    std::vector<Triangle> triangles{};
+    std::vector<double> depths{};
+    Bvh bvh{};
+    double facet_length = 0.0;  // mean
+  };
+  static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+  static Body make_body(const InterfaceTissue& tissue);
+  InterfaceSurface surface(std::size_t body) const noexcept;
+  Vector3 direction(const InterfaceRow& row, int body) const noexcept;
+  void mark_stale(std::size_t body) noexcept;
+  double move_bodies();
+  void find_rows();
+  void find_responses(std::span<const std::size_t> fresh);
+  void limit_rows(Status& status);
+  void assemble();
+  bool find_forces();
+  bool has_entered() const noexcept;
+  void factor_pressing();
+
+  InterfaceLimits limits_;
+  std::vector<Body> bodies_;
+  std::vector<double> column_, moved_, factor_, chunk_, answer_;
+  InterfaceRows geometry_;
+  std::vector<Row> rows_, before_;  // sorted by key
+  std::vector<std::size_t> pressing_;
+  ComplementarityProblem problem_;
+};
+
+}}}  // namespace palpate::detail
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/detail/interface_problem.ipp>
+#endif

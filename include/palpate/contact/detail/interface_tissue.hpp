@@ -1,0 +1,92 @@
+// A tissue that touches others, for the thread that solves their contact.
+#pragma once
+
+#include <palpate/contact/tissue_view.hpp>
+
+#include <span>
+#include <type_traits>
+
+namespace palpate { inline namespace PALPATE_ABI { namespace detail {
+
+/// A tissue that moves and can be touched by others: the thread that steps it can read the surface without any forces
+/// and the compliance, and set the forces of the other tissues.
+template <class T>
+concept MovesBesideOthers = AnnouncesChanges<T> && HasBackgroundWork<T> &&
+    requires(T& tissue, const T& constant, std::span<const VertexForce> forces) {
+  { constant.newest_surface() }
+  noexcept->std::same_as<const ContactSurface&>;
+  { constant.newest_compliance(0, 0) }
+  noexcept->FixedExpression<3, 3>;
+  tissue.set_contact_forces(forces);
+};
+
+struct MotionFunctions {
+  Status (*begin_tick)(void*) noexcept;
+  BackgroundStep (*step)(void*);
+  const ContactSurface& (*newest_surface)(const void*) noexcept;
+  Matrix3 (*newest_compliance)(const void*, int, int) noexcept;
+  void (*set_contact_forces)(void*, std::span<const VertexForce>);
+};
+
+template <MovesBesideOthers T>
+struct MotionCalls {
+  static constexpr MotionFunctions functions{
+      [](void* t) noexcept -> Status { return static_cast<T*>(t)->begin_tick(); },
+      [](void* t) -> BackgroundStep { return static_cast<T*>(t)->background_work(); },
+      [](const void* t) noexcept -> const ContactSurface& { return static_cast<const T*>(t)->newest_surface(); },
+      [](const void* t, int i, int j) noexcept -> Matrix3 { return static_cast<const T*>(t)->newest_compliance(i, j); },
+      [](void* t, std::span<const VertexForce> f) { static_cast<T*>(t)->set_contact_forces(f); }};
+};
+
+/// Of a static tissue all threads read the same; of one that moves, each its own copy.
+class InterfaceTissue {
+ public:
+  template <class T>
+  explicit InterfaceTissue(T& tissue) noexcept : view_(tissue), tissue_(&tissue) {
+    if constexpr (MovesBesideOthers<T>) motion_ = &MotionCalls<T>::functions;
+  }
+
+  /// As ticks see it.
+  TissueView& view() noexcept { return view_; }
+  const TissueView& view() const noexcept { return view_; }
+  bool moves() const noexcept { return motion_ != nullptr; }
+  /// Whether its surface and compliance are known to the thread that solves the contact.
+  bool can_touch_others() const noexcept {
+    return !view_.can_be_cut() && (moves() || (!view_.announces_changes() && !view_.takes_forces()));
+  }
+  /// For the thread that ticks.
+  Status begin_tick() noexcept {
+    const Status status = moves() ? motion_->begin_tick(tissue_) : Status{};
+    view_.look();
+    return status;
+  }
+
+  // For the thread that steps and solves the contact
+
+  BackgroundStep step() { return motion_->step(tissue_); }
+  const ContactSurface& surface() const noexcept {
+    return moves() ? motion_->newest_surface(tissue_) : view_.contact_surface();
+  }
+  Matrix3 compliance(int i, int j) const noexcept {
+    return moves() ? motion_->newest_compliance(tissue_, i, j) : view_.compliance(i, j);
+  }
+  Vector3 displacement(int i, std::span<const VertexForce> forces) const noexcept {
+    Vector3 u(0.0, 0.0, 0.0);
+    if (!moves()) {
+      view_.displacement(i, forces, u);
+      return u;
+    }
+    for (const VertexForce& f : forces) u += compliance(i, f.vertex) * f.force.in_model_axes();
+    return u;
+  }
+  void set_contact_forces(std::span<const VertexForce> forces) {
+    if (moves()) motion_->set_contact_forces(tissue_, forces);
+  }
+
+ private:
+  TissueView view_;
+  void* tissue_;
+  const MotionFunctions* motion_ = nullptr;
+};
+
+}}}  // namespace palpate::detail

@@ -1,0 +1,179 @@
+// Tissues that touch each other.
+#pragma once
+
+#include <palpate/concepts/tissue_claim.hpp>
+#include <palpate/contact/detail/interface_problem.hpp>
+#include <palpate/contact/detail/near_compliance.hpp>
+#include <palpate/contact/detail/requested_vertices.hpp>
+#include <palpate/contact/tissue_group.hpp>
+#include <palpate/core/thread_exchange.hpp>
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+struct TissueContactOptions {
+  int capacity = 512;         ///< of gaps between all tissues, 1 to 1024; of more, the smallest are kept
+  double interval = 0.01;     ///< between two solutions [s]
+  bool self_contact = false;  ///< also each tissue with itself
+};
+
+class TouchingTissues;
+
+/// A tissue as tools feel it: moved by the tissues that it touches, with a compliance that includes them. Satisfies
+/// TissueModel; for one servo at a time. Part of TouchingTissues.
+class TouchingTissue {
+ public:
+  TouchingTissue(const TouchingTissue&) = delete;
+  TouchingTissue& operator=(const TouchingTissue&) = delete;
+
+  const ContactSurface& contact_surface() const noexcept { return views_.front().surface; }
+  const Eigen::Isometry3d& to_world() const noexcept { return tissue_.view().to_world(); }
+  Status require_columns(std::span<const int> vertices) noexcept;
+  Matrix3 compliance(int i, int j) const noexcept;
+  Vector3 displacement_of(int i, std::span<const VertexForce> forces) const noexcept;
+  std::uint64_t compliance_revision() const noexcept { return taken_; }
+  /// No block of a symmetric positive matrix is larger than the geometric mean of those on the diagonal.
+  double compliance_bound(int j) const noexcept;
+  double compliance_floor() const noexcept { return tissue_.view().compliance_floor(); }
+
+  NoHook prefetch(std::span<const int>) noexcept { return {}; }
+  Status begin_tick() noexcept;
+  void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept;
+  std::uint64_t updates() const noexcept { return updates_.load(std::memory_order_relaxed); }
+  NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
+  void prepare_tools(const ToolRadii& radii, const ContactParameters& parameters);
+  NoHook try_cut(const BladeSweep&) noexcept { return {}; }
+  Matrix3 half_space_map(int v) const noexcept { return tissue_.view().half_space_map(v); }
+  NoHook background_work() noexcept { return {}; }
+  NoHook report_slow(bool) noexcept { return {}; }
+  NoHook report_failed(bool) noexcept { return {}; }
+  TissueClaim& claim() noexcept { return claim_; }
+  std::vector<std::string> notes() const { return tissue_.view().notes(); }
+  bool refuses_suspicious_units() const noexcept { return tissue_.view().refuses_suspicious_units(); }
+
+ private:
+  friend class TouchingTissues;
+  struct View {
+    ContactSurface surface;
+    std::vector<double> restraint{};  // Z of C_ij - Z_i^T Z_j, `rows` x 3 per vertex
+    int rows = 0;
+    detail::NearCompliance near_compliance{};
+    Status status{};
+  };
+  struct Forces {
+    std::vector<VertexForce> item;
+    std::size_t count = 0;
+    detail::VertexList near_vertices, pressed;  // of ticks since the surface was taken
+    std::span<const VertexForce> all() const noexcept { return {item.data(), count}; }
+  };
+  /// Of vertices whose compliance is ready for a tick; that of others is evaluated there.
+  static constexpr std::size_t most_near = 512, most_pressed = 192;
+
+  explicit TouchingTissue(const detail::InterfaceTissue& tissue);
+
+  using Block = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>>;
+  static Block restraint(const View& view, int v) noexcept {
+    return {view.restraint.data() + 3 * static_cast<std::ptrdiff_t>(view.rows) * v, view.rows, 3};
+  }
+  static Matrix3 restrained(const View& view, int i, int j, const Matrix3& c) noexcept;
+  /// For the thread that solves: the surface as tools do not press it, with the rows closed as they are. With the
+  /// forces of the last tick, its compliance gives the surface that was found.
+  void publish(detail::InterfaceProblem& problem, std::size_t body, Status status);
+  /// Sum of Z f over forces.
+  static VectorX pushed_by(const View& view, std::span<const VertexForce> forces);
+
+  detail::InterfaceTissue tissue_;
+  detail::ClaimedTissue claimed_;
+  double largest_bound_ = 0.0;
+  std::shared_ptr<const ForceAccuracy> accuracy_;
+  TripleBuffer<View> views_;
+  TripleBuffer<Forces> given_;
+  TripleBuffer<std::vector<VertexForce>> drawn_;
+  mutable detail::RequestedVertices near_;
+  detail::RequestedVertices pressed_;
+  const View* newest_ = nullptr;  // published last: not written before the next one is
+  VectorX pushed_;                // at that time
+  std::vector<double> moved_;
+  std::uint64_t taken_ = 0, published_ = 0;
+  std::atomic<std::uint64_t> updates_{0};
+  std::atomic<bool> slow_{false}, failed_{false};
+  Status ticked_;
+  TissueClaim claim_;
+};
+
+/// Contact between deformable tissues, solved in a background thread; ticks feel each tissue with its neighbours behind
+/// it. For static tissues whose compliance columns are all stored, and for tissues that move and are not cut, whose
+/// steps this object makes.
+///
+/// Gaps are those of mortar elements on the deformed surfaces, which pass a uniform pressure exactly between any
+/// meshes. The forces between two tissues are in equilibrium to rounding. In every solution the forces of the tools in
+/// the last tick are taken, and all gaps are solved as one complementarity problem, without friction. Until the next
+/// solution the gaps that press stay closed: a tool feels a tissue with the compliance C - C J^T (J C J^T)^-1 J C. A
+/// steady force is thus that of one solution of all tissues, and its change is exact as long as no other gap opens or
+/// closes. Forces on one tissue reach the tools at another one with the next solution. docs/simulator.md.
+///
+/// A session takes `group()`, a BackgroundWorker takes this object; the tissues need no worker of their own. Refers to
+/// the tissues, which must outlive it. Poses, and the loads of static tissues, must not change while a tick or a
+/// solution runs.
+class TouchingTissues {
+ public:
+  /// Of at least two tissues, or one with self contact. Solves once; allocates. Throws unsupported for a tissue that is
+  /// cut or stiffens, and for a static one whose columns are not all stored; bad_argument for options that make no
+  /// sense; TissueClaim's error for a moving tissue that a servo uses.
+  template <class... T>
+  requires(sizeof...(T) > 1 && (TissueModel<T> && ...)) explicit TouchingTissues(T&... tissues)
+      : TouchingTissues(TissueContactOptions{}, tissues...) {}
+  template <class... T>
+  requires(sizeof...(T) > 0 && (TissueModel<T> && ...)) explicit TouchingTissues(const TissueContactOptions& options,
+                                                                                 T&... tissues)
+      : TouchingTissues(std::vector<detail::InterfaceTissue>{detail::InterfaceTissue(tissues)...}, options) {}
+
+  /// The tissues as tools feel them, in the order given.
+  TissueGroup group();
+  std::size_t size() const noexcept { return tissues_.size(); }
+  /// One of them, for example for a group with friction of its own. Throws index_out_of_range.
+  TouchingTissue& tissue(std::size_t k);
+
+  /// The next step of a tissue that moves, or solution of the contact; for BackgroundWorker. From one thread.
+  BackgroundStep background_work();
+  /// Finds the contact forces for the forces of tools in the last tick, without a step. From the same thread.
+  void solve();
+  void report_slow(bool slow) noexcept;
+  void report_failed(bool failed) noexcept;
+
+  /// Forces of the other tissues on the vertices of one, as found last; for one drawing thread. A static tissue is
+  /// drawn with these and those of the tools. Valid until the next call for that tissue.
+  std::span<const VertexForce> contact_forces(std::size_t k);
+
+  /// Of the last solution; for the thread that solves.
+  struct Report {
+    int rows = 0, pressing = 0;  ///< gaps that are open or closed, and those that press
+    double force = 0.0;          ///< sum of all normal forces [N]
+    Status status;
+  };
+  Report report() const noexcept { return report_; }
+
+ private:
+  void take_forces();
+  void step(std::size_t k);
+  TouchingTissues(std::vector<detail::InterfaceTissue> tissues, const TissueContactOptions& options);
+
+  TissueContactOptions options_;
+  std::vector<std::unique_ptr<TouchingTissue>> tissues_;
+  std::unique_ptr<detail::InterfaceProblem> problem_;
+  double time_ = 0.0, next_solution_ = 0.0;  // of what was done [s]
+  std::vector<double> next_step_;            // of the tissues; infinite for one that does not move
+  std::vector<VertexForce> forces_;
+  Report report_;
+};
+
+}}  // namespace palpate
+
+#if PALPATE_HEADER_ONLY
+#include <palpate/contact/touching_tissues.ipp>
+#endif

@@ -1,0 +1,238 @@
+// Definitions of touching_tissues.hpp.
+#pragma once
+
+#include <palpate/contact/touching_tissues.hpp>
+
+#include <palpate/core/platform.hpp>
+#include <palpate/core/setup_error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace palpate { inline namespace PALPATE_ABI {
+
+static_assert(TissueModel<TouchingTissue>);
+
+PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue)
+    : tissue_(tissue), claimed_(tissue_.view().claim()) {
+  std::vector<int> all(static_cast<std::size_t>(tissue_.surface().vertex_count()));
+  std::iota(all.begin(), all.end(), 0);
+  if (!tissue_.can_touch_others())
+    raise(SetupErrorKind::unsupported, "contact with other tissues for one that is cut or stiffens",
+          "Use Condensed<...> or Implicit<...> for a tissue that touches others");
+  if (!tissue_.moves() && tissue_.view().require_columns(all).has(StatusFlag::degraded_model))
+    raise(SetupErrorKind::unsupported, "contact with other tissues for one whose compliance columns are not all stored",
+          "Use Condensed<...>, or ColumnFill::synchronous with compliance_slots for every touchable vertex");
+  for (const int v : all) largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
+  View view{tissue_.surface()};
+  accuracy_ = view.surface.shared_force_accuracy();
+  if (!tissue_.view().has_contact_materials()) {
+    view.surface.set_materials({});
+    view.surface.set_subfacet(nullptr);
+    accuracy_ = nullptr;
+  }
+  view.surface.expect(view.surface.positions(), {});
+  view.near_compliance = {all.size(), most_near, most_pressed};
+  views_.fill(view);
+  near_ = {all.size(), most_near};
+  pressed_ = {all.size(), most_pressed};
+  given_.fill(
+      {std::vector<VertexForce>(all.size()), 0, detail::VertexList(most_near), detail::VertexList(most_pressed)});
+}
+
+PALPATE_INLINE Matrix3 TouchingTissue::restrained(const View& view, int i, int j, const Matrix3& c) noexcept {
+  if (view.rows == 0) return c;
+  return c - restraint(view, i).transpose().lazyProduct(restraint(view, j));
+}
+
+PALPATE_INLINE Status TouchingTissue::require_columns(std::span<const int> vertices) noexcept {
+  for (const int v : vertices) pressed_.add(v);
+  return tissue_.view().require_columns(vertices);
+}
+
+PALPATE_INLINE Matrix3 TouchingTissue::compliance(int i, int j) const noexcept {
+  const View& view = views_.front();
+  const Matrix3* const ready = view.near_compliance.find(i, j);
+  return ready != nullptr ? *ready : restrained(view, i, j, tissue_.view().compliance(i, j));
+}
+
+PALPATE_INLINE Vector3 TouchingTissue::displacement_of(int i, std::span<const VertexForce> forces) const noexcept {
+  const View& view = views_.front();
+  near_.add(i);
+  Vector3 u(0.0, 0.0, 0.0), others = u;
+  view.near_compliance.multiply(i, forces, u, [&](const VertexForce& f) {
+    others += restrained(view, i, f.vertex, tissue_.view().compliance(i, f.vertex)) * f.force.in_model_axes();
+  });
+  return u + others;
+}
+
+PALPATE_INLINE double TouchingTissue::compliance_bound(int j) const noexcept {
+  const double bound = tissue_.view().compliance_bound(j);
+  return std::sqrt(bound * std::max(bound, largest_bound_));
+}
+
+PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
+  Status status = tissue_.begin_tick() | ticked_;
+  if (views_.update()) {
+    ++taken_;
+    near_.clear();
+    pressed_.clear();
+  }
+  status |= views_.front().status;
+  if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
+  if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
+  return status;
+}
+
+PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces,
+                                             std::span<const PointForce> points) noexcept {
+  Forces& out = given_.back();
+  out.count = 0;
+  ticked_ = {};
+  for (const VertexForce& f : forces)
+    if (!all_finite(f.force.in_model_axes()))
+      ticked_.set(StatusFlag::non_finite_force);
+    else if (out.count < out.item.size())
+      out.item[out.count++] = f;
+    else
+      ticked_.set(StatusFlag::degraded_model);
+  out.near_vertices.copy(near_.all());
+  out.pressed.copy(pressed_.all());
+  given_.publish();
+  tissue_.view().end_tick(forces, points);
+}
+
+PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
+  tissue_.view().prepare_tools(radii, parameters);
+  begin_tick();
+}
+
+PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<const VertexForce> forces) {
+  VectorX pushed = VectorX::Zero(view.rows);
+  for (const VertexForce& f : forces) pushed += restraint(view, f.vertex) * f.force.in_model_axes();
+  return pushed;
+}
+
+PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, std::size_t body, Status status) {
+  View& view = views_.back();
+  const Forces& given = given_.front();
+  view.rows = problem.pressing();
+  problem.restraint(body, view.restraint);
+  problem.displacement(body, moved_);
+  newest_ = &view;
+  pushed_ = pushed_by(view, given.all());
+  std::vector<Vector3> free(tissue_.surface().positions()), pressed(free);
+  for (std::size_t v = 0; v < free.size(); ++v) {
+    const int i = static_cast<int>(v);
+    const Vector3 moved(moved_[3 * v], moved_[3 * v + 1], moved_[3 * v + 2]);
+    pressed[v] = problem.base(body)[v] + moved;
+    free[v] += moved;
+    if (view.rows > 0) free[v] += restraint(view, i).transpose() * pushed_;
+  }
+  view.near_compliance.set(given.near_vertices.all(), given.pressed.all(),
+                           [&](int i, int j) { return restrained(view, i, j, tissue_.compliance(i, j)); });
+  view.surface.move_to(free, ++published_);
+  view.surface.expect(pressed, given.all());
+  view.surface.set_force_accuracy(view.rows > 0 ? nullptr : accuracy_);  // measured without other tissues
+  view.status = status;
+  views_.publish();
+  problem.forces(body, drawn_.back());
+  drawn_.publish();
+  updates_.fetch_add(1, std::memory_order_relaxed);
+}
+
+PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTissue> tissues,
+                                                const TissueContactOptions& options)
+    : options_(options) {
+  if (tissues.size() < (options.self_contact ? 1u : 2u))
+    raise(SetupErrorKind::bad_argument, "contact between tissues for fewer than two",
+          "Name all tissues that touch each other, or set self_contact");
+  if (options.capacity < 1 || options.capacity > 1024)
+    raise(SetupErrorKind::bad_argument, "a capacity of " + std::to_string(options.capacity) + " gaps between tissues",
+          "Set TissueContactOptions::capacity to 1 to 1024");
+  if (!(options.interval > 0.0 && options.interval < infinity))
+    raise(SetupErrorKind::bad_argument, "an interval between contact solutions that is not positive",
+          "Set TissueContactOptions::interval to about 0.01 s");
+  for (std::size_t k = 0; k < tissues.size(); ++k)
+    for (std::size_t l = 0; l < k; ++l)
+      if (tissues[k].view().is_same(tissues[l].view()))
+        raise(SetupErrorKind::bad_argument, "contact of a tissue with itself as if it were two",
+              "Name every tissue once, and set self_contact where it may touch itself");
+  for (const detail::InterfaceTissue& t : tissues) {
+    tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t)));
+    next_step_.push_back(t.moves() ? 0.0 : infinity);
+  }
+  problem_ = std::make_unique<detail::InterfaceProblem>(
+      std::move(tissues), detail::InterfaceLimits{.capacity = options.capacity, .self_contact = options.self_contact});
+  solve();
+}
+
+PALPATE_INLINE TissueGroup TouchingTissues::group() {
+  TissueGroup group;
+  for (const auto& t : tissues_) group.add(*t);
+  return group;
+}
+
+PALPATE_INLINE TouchingTissue& TouchingTissues::tissue(std::size_t k) {
+  if (k >= tissues_.size())
+    raise(SetupErrorKind::index_out_of_range,
+          "tissue " + std::to_string(k) + " of " + std::to_string(tissues_.size()) + " that touch each other");
+  return *tissues_[k];
+}
+
+PALPATE_INLINE void TouchingTissues::report_slow(bool slow) noexcept {
+  for (const auto& t : tissues_) t->slow_.store(slow, std::memory_order_relaxed);
+}
+PALPATE_INLINE void TouchingTissues::report_failed(bool failed) noexcept {
+  for (const auto& t : tissues_) t->failed_.store(failed, std::memory_order_relaxed);
+}
+
+PALPATE_INLINE std::span<const VertexForce> TouchingTissues::contact_forces(std::size_t k) {
+  TouchingTissue& t = tissue(k);
+  t.drawn_.update();
+  return t.drawn_.front();
+}
+
+PALPATE_INLINE BackgroundStep TouchingTissues::background_work() {
+  for (std::size_t k = 0; k < tissues_.size(); ++k)
+    if (next_step_[k] <= time_) step(k);
+  if (next_solution_ <= time_) {
+    solve();
+    next_solution_ = time_ + options_.interval;
+  }
+  const double before = time_;
+  time_ = std::min(next_solution_, *std::ranges::min_element(next_step_));
+  return {true, time_ - before};
+}
+
+PALPATE_INLINE void TouchingTissues::take_forces() {
+  for (const auto& t : tissues_) t->given_.update();
+}
+
+/// With the forces between tissues that belong to those of the last tick.
+PALPATE_INLINE void TouchingTissues::step(std::size_t k) {
+  take_forces();
+  VectorX pushed = VectorX::Zero(problem_->pressing());
+  for (const auto& t : tissues_) pushed += t->pushed_by(*t->newest_, t->given_.front().all()) - t->pushed_;
+  problem_->follow(pushed);
+  problem_->forces(k, forces_);
+  tissues_[k]->tissue_.set_contact_forces(forces_);
+  next_step_[k] = time_ + tissues_[k]->tissue_.step().next;
+}
+
+PALPATE_INLINE void TouchingTissues::solve() {
+  const FlushDenormals flush;
+  take_forces();
+  for (std::size_t k = 0; k < tissues_.size(); ++k) problem_->load(k, tissues_[k]->given_.front().all());
+  const Status status = problem_->solve();
+  report_ = {static_cast<int>(problem_->rows().size()), 0, 0.0, status};
+  for (const auto& r : problem_->rows()) {
+    report_.pressing += r.force > 0.0;
+    report_.force += r.force;
+  }
+  for (std::size_t k = 0; k < tissues_.size(); ++k) tissues_[k]->publish(*problem_, k, status);
+}
+
+}}  // namespace palpate
