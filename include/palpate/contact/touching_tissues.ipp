@@ -166,7 +166,8 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
   }
   problem_ = std::make_unique<detail::InterfaceProblem>(
       std::move(tissues), detail::InterfaceLimits{.capacity = options.capacity, .self_contact = options.self_contact});
-  solve();
+  constexpr int most_solutions = 10;  // of bodies that overlap at first
+  for (int i = 0; i < most_solutions && (i == 0 || report_.status.has(StatusFlag::solver_not_converged)); ++i) solve();
 }
 
 PALPATE_INLINE TissueGroup TouchingTissues::group() {

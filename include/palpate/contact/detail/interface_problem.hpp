@@ -17,10 +17,11 @@ struct InterfaceLimits {
   bool self_contact = false;
 };
 
-/// Finds the forces between bodies whose compliance is known, so that none enters another one (Signorini's conditions
-/// on mortar gaps). W = sum of J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals
-/// and weights are those of the deformed surfaces: the problem is solved again until these stay. Rows that hardly
-/// change keep their columns J C. Allocates; for a background thread.
+/// Finds the forces between bodies whose compliance is known, so that none enters another one: Signorini's conditions
+/// on mortar gaps, and on vertices that enter another body although the mean gap around them is closed. W = sum of J C
+/// J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals and weights are those of the
+/// deformed surfaces: the problem is solved again until these stay. Rows that hardly change keep their columns J C.
+/// Allocates; for a background thread.
 class InterfaceProblem {
  public:
   /// The tissues must outlive it. The compliance columns of all their vertices are available.
@@ -71,7 +72,7 @@ class InterfaceProblem {
     std::vector<Triangle> triangles{};
     std::vector<double> depths{};
     Bvh bvh{};
-    double facet_length = 0.0;  // mean
+    double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
   };
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static Body make_body(const InterfaceTissue& tissue);
@@ -84,6 +85,16 @@ class InterfaceProblem {
   void limit_rows(Status& status);
   void assemble();
   bool find_forces();
+  /// The facet of another body that a vertex is nearest to, if it is above or below it.
+  struct NearestFacet {
+    int facet = -1;
+    double height = 0.0;  // of the vertex above it [m]
+    std::array<double, 3> weights{};
+    Vector3 normal = Vector3::Zero();
+  };
+  NearestFacet find_nearest(const Body& other, const Vector3& p) const noexcept;
+  NearestFacet find_opposite(const Body& own, const Body& other, int v) const noexcept;
+  void add_entered(std::size_t own, std::size_t other);
   bool has_entered() const noexcept;
   void factor_pressing();
 

@@ -28,6 +28,7 @@ PALPATE_INLINE InterfaceProblem::Body InterfaceProblem::make_body(const Interfac
   body.bvh = surface.bvh();
   body.depths =
       interface_depths(body.triangles, surface.positions(), boundary.triangles(), boundary.positions(), boundary.bvh());
+  for (const double depth : body.depths) body.deepest = std::max(body.deepest, depth);
   for (int t = 0; t < static_cast<int>(body.triangles.size()); ++t) body.facet_length += surface.facet_length(t);
   body.facet_length /= std::max(1.0, static_cast<double>(body.triangles.size()));
   return body;
@@ -96,7 +97,7 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
 
 /// Whether a row may keep the columns of another one: forces then differ by about as much.
 inline bool is_like(const InterfaceRow& a, const InterfaceRow& b) noexcept {
-  constexpr double same = 1e-3;
+  constexpr double same = 5e-3;
   if (a.terms.size() != b.terms.size() || (a.normal - b.normal).norm() > same) return false;
   for (std::size_t k = 0; k < a.terms.size(); ++k)
     if (a.terms[k].body != b.terms[k].body || a.terms[k].vertex != b.terms[k].vertex ||
@@ -115,6 +116,9 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
       geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length));
+      if (k == l) continue;
+      add_entered(k, l);
+      add_entered(l, k);
     }
   std::ranges::sort(geometry_.rows(), {}, &InterfaceRow::key);
   before_.swap(rows_);
@@ -157,16 +161,11 @@ PALPATE_INLINE void InterfaceProblem::find_responses(std::span<const std::size_t
     column_.resize(9 * at(vertices));
     for (std::size_t i = 0; i < loads.size();) {
       const int vertex = loads[i].vertex;
-      double* const c = column_.data();  // three columns
+      bodies_[k].tissue.column(vertex, column_);
       const std::size_t n = 3 * at(vertices);
-      for (int v = 0; v < vertices; ++v) {
-        const Matrix3 block = bodies_[k].tissue.compliance(v, vertex);
-        for (std::size_t a = 0; a < 3; ++a)
-          for (std::size_t b = 0; b < 3; ++b) c[b * n + 3 * at(v) + a] = block.data()[3 * b + a];
-      }
       for (; i < loads.size() && loads[i].vertex == vertex; ++i) {
         const auto column = [&](std::size_t b) {
-          return ConstInterfaceVector(c + b * n, static_cast<Eigen::Index>(n));
+          return ConstInterfaceVector(column_.data() + b * n, static_cast<Eigen::Index>(n));
         };
         InterfaceVector(rows_[loads[i].row].response[loads[i].side].data(), static_cast<Eigen::Index>(n)) +=
             loads[i].force[0] * column(0) + loads[i].force[1] * column(1) + loads[i].force[2] * column(2);
@@ -248,30 +247,73 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   return status;
 }
 
-/// Whether a vertex is inside another body, deeper than rows let it: they close mean gaps.
-PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
-  constexpr double allowed = 0.1;       // of a mean facet
-  constexpr double below = -0.7;        // cosine from the normal of the nearest facet: not beside a rim
+PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(const Body& other,
+                                                                             const Vector3& p) const noexcept {
+  constexpr double across = 0.7;        // cosine from the normal of the nearest facet: not beside a rim
+  constexpr double close = 1e-3;        // of a mean facet: no direction is known
   constexpr double of_thickness = 1.9;  // of a depth: beyond it the vertex is on the other side of the body
+  const double most = std::max(other.facet_length, 2.0 * other.deepest);
+  if (other.triangles.empty() || other.bvh.bounds().squared_distance(p) > most * most) return {};
+  const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
+  const auto weights = [&](int t) { return closest_point(p, corner(t, 0), corner(t, 1), corner(t, 2)).weights; };
+  const auto from = [&](int t, const std::array<double, 3>& w) {
+    return Vector3(p - (w[0] * corner(t, 0) + w[1] * corner(t, 1) + w[2] * corner(t, 2)));
+  };
+  NearestFacet found;
+  found.facet = other.bvh.nearest(p, [&](int t) { return from(t, weights(t)).squaredNorm(); });
+  found.weights = weights(found.facet);
+  const Vector3 path = from(found.facet, found.weights), first = corner(found.facet, 0);
+  found.normal = cross(corner(found.facet, 1) - first, corner(found.facet, 2) - first).normalized();
+  found.height = found.normal.dot(path);
+  const bool is_beside = std::abs(found.height) < across * path.norm() && path.norm() > close * other.facet_length;
+  if (is_beside || found.height < -of_thickness * other.depths[at(found.facet)]) return {};
+  return found;
+}
+
+/// The same only where the facet faces the vertex: one of another side is nearer where the vertex is deep in a thin
+/// body.
+PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_opposite(const Body& own, const Body& other,
+                                                                              int v) const noexcept {
+  constexpr double opposite = -0.2;  // cosine between the normals
+  const NearestFacet found = find_nearest(other, own.now[at(v)]);
+  if (found.facet < 0) return found;
+  Vector3 normal(0.0, 0.0, 0.0);
+  for (const int t : own.tissue.surface().triangles_at(v)) {
+    const Triangle& corners = own.triangles[at(t)];
+    const Vector3& first = own.now[at(corners[0])];
+    normal += cross(own.now[at(corners[1])] - first, own.now[at(corners[2])] - first);
+  }
+  return normal.dot(found.normal) < opposite * normal.norm() ? found : NearestFacet{};
+}
+
+/// Rows of vertices that pressed, or that have entered.
+PALPATE_INLINE void InterfaceProblem::add_entered(std::size_t k, std::size_t l) {
+  constexpr double entered = 0.002, reach = 0.25;  // of a mean facet
+  const Body &own = bodies_[k], &other = bodies_[l];
+  for (int v = 0; v < static_cast<int>(own.now.size()); ++v) {
+    const NearestFacet b = find_opposite(own, other, v);
+    if (b.facet < 0 || b.height > reach * other.facet_length) continue;
+    const InterfaceKey key{static_cast<int>(k), static_cast<int>(l), v, true};
+    const auto old = std::ranges::lower_bound(rows_, key, {}, [](const Row& r) { return r.row.key; });
+    const bool pressed = old != rows_.end() && old->row.key == key && old->force > 0.0;
+    if (!pressed && b.height > -entered * other.facet_length) continue;
+    const double own_depth = own.depths[at(own.tissue.surface().triangles_at(v).front())];
+    InterfaceRow row{key, -b.normal, 0.0, own_depth + other.depths[at(b.facet)]};
+    row.terms.push_back({key.body, v, -1.0});
+    for (std::size_t a = 0; a < 3; ++a)
+      if (b.weights[a] > 0.0) row.terms.push_back({key.other, other.triangles[at(b.facet)][a], b.weights[a]});
+    geometry_.rows().push_back(std::move(row));
+  }
+}
+
+/// A vertex that no facet faces is inside another body, too.
+PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
+  constexpr double allowed = 0.01;  // of a mean facet
   for (const Body& own : bodies_)
-    for (const Body& other : bodies_) {
-      if (&own == &other || other.triangles.empty()) continue;
-      const Box& bounds = other.bvh.bounds();
-      for (const Vector3& p : own.now) {
-        if (bounds.squared_distance(p) > 0.0) continue;
-        const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
-        const auto from_nearest = [&](int t) {
-          const auto w = closest_point(p, corner(t, 0), corner(t, 1), corner(t, 2)).weights;
-          return Vector3(p - (w[0] * corner(t, 0) + w[1] * corner(t, 1) + w[2] * corner(t, 2)));
-        };
-        const int t = other.bvh.nearest(p, [&](int i) { return from_nearest(i).squaredNorm(); });
-        const Vector3 from = from_nearest(t);
-        const double height = from.dot(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)).normalized());
-        if (height < -allowed * other.facet_length && height > -of_thickness * other.depths[at(t)] &&
-            height < below * from.norm())
-          return true;
-      }
-    }
+    for (const Body& other : bodies_)
+      if (&own != &other)
+        for (const Vector3& p : own.now)
+          if (find_nearest(other, p).height < -allowed * other.facet_length) return true;
   return false;
 }
 

@@ -25,9 +25,11 @@ struct InterfaceTerm {
   double weight = 0.0;
 };
 
-/// Which surfaces a row is between, and at which vertex of the first one.
+/// Which surfaces a row is between, and at which vertex of the first one. A row of the vertex alone keeps it out of the
+/// other surface.
 struct InterfaceKey {
   int body = 0, other = 0, vertex = 0;
+  bool alone = false;
   friend bool operator==(const InterfaceKey&, const InterfaceKey&) = default;
   friend auto operator<=>(const InterfaceKey&, const InterfaceKey&) = default;
 };

@@ -38,11 +38,33 @@ struct MotionCalls {
       [](void* t, std::span<const VertexForce> f) { static_cast<T*>(t)->set_contact_forces(f); }};
 };
 
+/// The compliance as the thread that solves the contact has it: of a static tissue, or of one that moves.
+template <class T>
+Matrix3 interface_compliance(const T& tissue, int i, int j) noexcept {
+  if constexpr (MovesBesideOthers<T>)
+    return tissue.newest_compliance(i, j);
+  else
+    return tissue.compliance(i, j);
+}
+
+/// C_ij of all vertices i as three columns of 3 entries per vertex.
+template <class T>
+void interface_column(const void* t, int j, std::span<double> column) noexcept {
+  const T& tissue = *static_cast<const T*>(t);
+  const std::size_t n = column.size() / 3;
+  double* const c = column.data();
+  for (std::size_t i = 0; 3 * i < n; ++i) {
+    const Matrix3 block = interface_compliance(tissue, static_cast<int>(i), j);
+    for (std::size_t b = 0; b < 3; ++b)
+      for (std::size_t a = 0; a < 3; ++a) c[b * n + 3 * i + a] = block.data()[3 * b + a];
+  }
+}
+
 /// Of a static tissue all threads read the same; of one that moves, each its own copy.
 class InterfaceTissue {
  public:
   template <class T>
-  explicit InterfaceTissue(T& tissue) noexcept : view_(tissue), tissue_(&tissue) {
+  explicit InterfaceTissue(T& tissue) noexcept : view_(tissue), tissue_(&tissue), column_(&interface_column<T>) {
     if constexpr (MovesBesideOthers<T>) motion_ = &MotionCalls<T>::functions;
   }
 
@@ -70,6 +92,8 @@ class InterfaceTissue {
   Matrix3 compliance(int i, int j) const noexcept {
     return moves() ? motion_->newest_compliance(tissue_, i, j) : view_.compliance(i, j);
   }
+  /// `column` has 9 entries per vertex.
+  void column(int j, std::span<double> column) const noexcept { column_(tissue_, j, column); }
   Vector3 displacement(int i, std::span<const VertexForce> forces) const noexcept {
     Vector3 u(0.0, 0.0, 0.0);
     if (!moves()) {
@@ -86,6 +110,7 @@ class InterfaceTissue {
  private:
   TissueView view_;
   void* tissue_;
+  void (*column_)(const void*, int, std::span<double>) noexcept;
   const MotionFunctions* motion_ = nullptr;
 };
 
