@@ -18,7 +18,7 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 struct TissueContactOptions {
   int capacity = 512;         ///< of gaps between all tissues, 1 to 1024; of more, the smallest are kept
-  double interval = 0.01;     ///< between two solutions [s]
+  double interval = 0.01;     ///< between two solutions, which also follow every step of a tissue that moves [s]
   bool self_contact = false;  ///< also each tissue with itself
 };
 
@@ -115,11 +115,14 @@ class TouchingTissue {
 /// the last tick are taken, and all gaps are solved as one complementarity problem, without friction. Until the next
 /// solution the gaps that press stay closed: a tool feels a tissue with the compliance C - C J^T (J C J^T)^-1 J C. A
 /// steady force is thus that of one solution of all tissues, and its change is exact as long as no other gap opens or
-/// closes. Forces on one tissue reach the tools at another one with the next solution. docs/simulator.md.
+/// closes. Forces on one tissue reach the tools at another one with the next solution. Vertices and edges that enter
+/// another tissue, although the mean gaps are closed, have rows of their own. Contacts of few facets, and edge against
+/// edge, are coarse: docs/simulator.md.
 ///
 /// A session takes `group()`, a BackgroundWorker takes this object; the tissues need no worker of their own. Refers to
-/// the tissues, which must outlive it. Poses, and the loads of static tissues, must not change while a tick or a
-/// solution runs.
+/// the tissues, which must outlive it; a tissue belongs to one such object, and sessions use it through this one only.
+/// Poses, loads of static tissues and `reset` of moving ones must not change while a tick or a solution runs. The
+/// forces of the last tick stay until the next one: call `HapticServo::release` at the end.
 class TouchingTissues {
  public:
   /// Of at least two tissues, or one with self contact. Solves once; allocates. Throws unsupported for a tissue that is
@@ -153,7 +156,7 @@ class TouchingTissues {
   /// Of the last solution; for the thread that solves.
   struct Report {
     int rows = 0, pressing = 0;  ///< gaps that are open or closed, and those that press
-    double force = 0.0;          ///< sum of all normal forces [N]
+    double force = 0.0;          ///< sum of the magnitudes of all forces, in any direction [N]
     Status status;
   };
   Report report() const noexcept { return report_; }

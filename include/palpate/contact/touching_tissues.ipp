@@ -107,6 +107,7 @@ PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces
 PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
   tissue_.view().prepare_tools(radii, parameters);
   begin_tick();
+  end_tick({});  // the tools of a servo before
 }
 
 PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<const VertexForce> forces) {
@@ -197,9 +198,13 @@ PALPATE_INLINE std::span<const VertexForce> TouchingTissues::contact_forces(std:
 }
 
 PALPATE_INLINE BackgroundStep TouchingTissues::background_work() {
+  bool stepped = false;
   for (std::size_t k = 0; k < tissues_.size(); ++k)
-    if (next_step_[k] <= time_) step(k);
-  if (next_solution_ <= time_) {
+    if (next_step_[k] <= time_) {
+      step(k);
+      stepped = true;
+    }
+  if (stepped || next_solution_ <= time_) {
     solve();
     next_solution_ = time_ + options_.interval;
   }

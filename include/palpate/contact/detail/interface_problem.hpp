@@ -30,8 +30,8 @@ class InterfaceProblem {
   /// For a present surface and pose of a tissue, under these forces of tools.
   void load(std::size_t body, std::span<const VertexForce> tools);
   /// Finds the forces for these loads. Flags solver_not_converged, degraded_model (more rows than the capacity),
-  /// large_displacement (bodies that overlap, without forces, by a large part of their thickness) and lost_contact (a
-  /// vertex is inside another body).
+  /// large_displacement (bodies overlap at rest by a tenth of the thinner one), lost_contact (a vertex or an edge is
+  /// inside another body) and coarse_contact (few rows press: the surfaces are too coarse for the contact).
   Status solve();
 
   struct Row {
@@ -73,6 +73,8 @@ class InterfaceProblem {
     std::vector<double> depths{};
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
+    std::uint64_t revision = 0;                // of the surface of a static tissue
+    std::vector<double> closed{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
   };
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static Body make_body(const InterfaceTissue& tissue);
@@ -80,6 +82,7 @@ class InterfaceProblem {
   Vector3 direction(const InterfaceRow& row, int body) const noexcept;
   void mark_stale(std::size_t body) noexcept;
   double move_bodies();
+  bool keeps_shape() const noexcept;
   void find_rows();
   void find_responses(std::span<const std::size_t> fresh);
   void limit_rows(Status& status);
@@ -95,6 +98,24 @@ class InterfaceProblem {
   NearestFacet find_nearest(const Body& other, const Vector3& p) const noexcept;
   NearestFacet find_opposite(const Body& own, const Body& other, int v) const noexcept;
   void add_entered(std::size_t own, std::size_t other);
+  /// Where an edge goes through another body: the middle of that part, and the nearest way out.
+  struct Crossing {
+    double along = 0.0, depth = 0.0;  // part of the edge; [m]
+    int facet = -1;                   // of the other body
+    std::array<double, 3> weights{};
+    Vector3 out = Vector3::Zero();  // unit
+  };
+  Crossing find_crossing(const Body& other, const Vector3& from, const Vector3& to) const noexcept;
+  /// Calls visit(vertex, end, crossing) for the edges of a body that go through another one, where no mean gap is
+  /// closed.
+  template <class Visit>
+  void visit_crossings(const Body& own, const Body& other, Visit&& visit) const;
+  void add_crossings(std::size_t own, std::size_t other);
+  void note_closed(std::span<const InterfaceRow> rows);
+  bool may_enter(const Body& body, int vertex, double height, double length) const noexcept;
+  const Row* pressed_row(const InterfaceKey& key) const noexcept;
+  bool overlap_at_rest();
+  bool is_coarse() const noexcept;
   bool has_entered() const noexcept;
   void factor_pressing();
 
@@ -105,6 +126,7 @@ class InterfaceProblem {
   std::vector<Row> rows_, before_;  // sorted by key
   std::vector<std::size_t> pressing_;
   ComplementarityProblem problem_;
+  bool moved_at_rest_ = true, overlaps_ = false;  // since the overlap was found; what was found
 };
 
 }}}  // namespace palpate::detail

@@ -36,8 +36,12 @@ PALPATE_INLINE InterfaceProblem::Body InterfaceProblem::make_body(const Interfac
 
 PALPATE_INLINE void InterfaceProblem::load(std::size_t k, std::span<const VertexForce> tools) {
   Body& body = bodies_[k];
+  const Eigen::Isometry3d before = body.pose;
   body.pose = body.tissue.view().to_world();
   const ContactSurface& surface = body.tissue.surface();
+  const std::uint64_t revision = body.tissue.moves() ? 0 : surface.revision();
+  if (revision != body.revision || before.matrix() != body.pose.matrix()) moved_at_rest_ = true;
+  body.revision = revision;
   for (int v = 0; v < surface.vertex_count(); ++v)
     body.base[at(v)] = surface.position(v) + body.tissue.displacement(v, tools);
   if (body.tissue.moves()) mark_stale(k);
@@ -95,6 +99,16 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
   return change > 0.0 ? std::sqrt(change / std::max(change, largest)) : 0.0;
 }
 
+/// False where rows that contradict each other have moved a body by more than its size.
+PALPATE_INLINE bool InterfaceProblem::keeps_shape() const noexcept {
+  for (const Body& body : bodies_) {
+    const double size = body.tissue.surface().bvh().bounds().size().norm();
+    for (std::size_t v = 0; v < body.now.size(); ++v)
+      if (!((body.now[v] - body.pose * body.base[v]).norm() <= size)) return false;
+  }
+  return true;
+}
+
 /// Whether a row may keep the columns of another one: forces then differ by about as much.
 inline bool is_like(const InterfaceRow& a, const InterfaceRow& b) noexcept {
   constexpr double same = 5e-3;
@@ -116,10 +130,14 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
       geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length));
-      if (k == l) continue;
-      add_entered(k, l);
-      add_entered(l, k);
     }
+  note_closed(geometry_.rows());
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    for (std::size_t l = 0; l < bodies_.size(); ++l)
+      if (k != l) {
+        add_entered(k, l);
+        add_crossings(k, l);
+      }
   std::ranges::sort(geometry_.rows(), {}, &InterfaceRow::key);
   before_.swap(rows_);
   rows_.clear();
@@ -175,15 +193,12 @@ PALPATE_INLINE void InterfaceProblem::find_responses(std::span<const std::size_t
 }
 
 PALPATE_INLINE void InterfaceProblem::limit_rows(Status& status) {
-  constexpr double most_overlap = 0.1;  // of the thickness of both bodies
   for (Row& r : rows_) {
-    double resting = r.gap = 0.0;
+    r.gap = 0.0;
     for (const InterfaceTerm& t : r.row.terms) {
       const Body& body = bodies_[at(t.body)];
       r.gap += t.weight * r.row.normal.dot(body.pose * body.base[at(t.vertex)]);
-      resting += t.weight * r.row.normal.dot(body.pose * body.tissue.surface().position(t.vertex));
     }
-    if (-resting > most_overlap * 2.0 * r.row.depth) status.set(StatusFlag::large_displacement);
   }
   if (rows_.size() <= at(limits_.capacity)) return;
   status.set(StatusFlag::degraded_model);
@@ -232,6 +247,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   Status status;
   double change = infinity;
   bool solved = true;
+  if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
   move_bodies();
   for (int i = 0; i < limits_.maximum_iterations && change > limits_.tolerance; ++i) {
     status = {};
@@ -240,9 +256,16 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
     assemble();
     solved = find_forces();
     change = move_bodies();
+    if (!keeps_shape()) {
+      for (Row& r : rows_) r.force = r.present = 0.0;
+      solved = false;
+      move_bodies();
+    }
   }
   if (!solved || change > flagged) status.set(StatusFlag::solver_not_converged);
   if (has_entered()) status.set(StatusFlag::lost_contact);
+  if (overlaps_) status.set(StatusFlag::large_displacement);
+  if (is_coarse()) status.set(StatusFlag::coarse_contact);
   factor_pressing();
   return status;
 }
@@ -286,34 +309,197 @@ PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_opposite(co
   return normal.dot(found.normal) < opposite * normal.norm() ? found : NearestFacet{};
 }
 
+/// A row of the last linearisation that pressed; null if it did not.
+PALPATE_INLINE const InterfaceProblem::Row* InterfaceProblem::pressed_row(const InterfaceKey& key) const noexcept {
+  const auto old = std::ranges::lower_bound(rows_, key, {}, [](const Row& r) { return r.row.key; });
+  return old != rows_.end() && old->row.key == key && old->force > 0.0 ? &*old : nullptr;
+}
+
+/// Of mean gaps, at the present positions.
+PALPATE_INLINE void InterfaceProblem::note_closed(std::span<const InterfaceRow> rows) {
+  for (Body& body : bodies_) body.closed.assign(body.now.size(), infinity);
+  for (const InterfaceRow& row : rows) {
+    if (row.key.alone) continue;
+    double gap = 0.0;
+    for (const InterfaceTerm& t : row.terms) gap += t.weight * row.normal.dot(bodies_[at(t.body)].now[at(t.vertex)]);
+    if (gap >= 0.0 && pressed_row(row.key) == nullptr) continue;
+    for (const InterfaceTerm& t : row.terms) {
+      double& closed = bodies_[at(t.body)].closed[at(t.vertex)];
+      closed = std::min(closed, std::min(0.0, gap));
+    }
+  }
+}
+
+/// Whether a vertex or edge at this height above another surface needs no row of its own. Where a mean gap is closed,
+/// or will be, a fiftieth of a facet is allowed beyond it: rows for less would only cost time.
+PALPATE_INLINE bool InterfaceProblem::may_enter(const Body& body, int v, double height, double length) const noexcept {
+  constexpr double beside_closed = 0.02, elsewhere = 0.002;  // of a mean facet
+  const double closed = body.closed[at(v)];
+  return closed < infinity ? height - closed > -beside_closed * length : height > -elsewhere * length;
+}
+
 /// Rows of vertices that pressed, or that have entered.
 PALPATE_INLINE void InterfaceProblem::add_entered(std::size_t k, std::size_t l) {
-  constexpr double entered = 0.002, reach = 0.25;  // of a mean facet
+  constexpr double reach = 0.25;  // of a mean facet
   const Body &own = bodies_[k], &other = bodies_[l];
   for (int v = 0; v < static_cast<int>(own.now.size()); ++v) {
     const NearestFacet b = find_opposite(own, other, v);
     if (b.facet < 0 || b.height > reach * other.facet_length) continue;
     const InterfaceKey key{static_cast<int>(k), static_cast<int>(l), v, true};
-    const auto old = std::ranges::lower_bound(rows_, key, {}, [](const Row& r) { return r.row.key; });
-    const bool pressed = old != rows_.end() && old->row.key == key && old->force > 0.0;
-    if (!pressed && b.height > -entered * other.facet_length) continue;
-    const double own_depth = own.depths[at(own.tissue.surface().triangles_at(v).front())];
-    InterfaceRow row{key, -b.normal, 0.0, own_depth + other.depths[at(b.facet)]};
-    row.terms.push_back({key.body, v, -1.0});
-    for (std::size_t a = 0; a < 3; ++a)
-      if (b.weights[a] > 0.0) row.terms.push_back({key.other, other.triangles[at(b.facet)][a], b.weights[a]});
-    geometry_.rows().push_back(std::move(row));
+    if (pressed_row(key) == nullptr && may_enter(own, v, b.height, other.facet_length)) continue;
+    const Triangle& corners = other.triangles[at(b.facet)];
+    geometry_.rows().push_back({key,
+                                -b.normal,
+                                0.0,
+                                {{key.body, v, -1.0},
+                                 {key.other, corners[0], b.weights[0]},
+                                 {key.other, corners[1], b.weights[1]},
+                                 {key.other, corners[2], b.weights[2]}}});
   }
 }
 
-/// A vertex that no facet faces is inside another body, too.
+/// The way out is along the mean of the normals where it enters and leaves.
+PALPATE_INLINE InterfaceProblem::Crossing InterfaceProblem::find_crossing(const Body& other, const Vector3& from,
+                                                                          const Vector3& to) const noexcept {
+  const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
+  const auto normal = [&](int t) {
+    return Vector3(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)).normalized());
+  };
+  const Vector3 path = to - from;
+  double enters = infinity, leaves = -infinity;
+  int first = -1, last = -1;
+  other.bvh.visit_along(from, path, 0.0, [&](int t) {
+    const Vector3 e1 = corner(t, 1) - corner(t, 0), e2 = corner(t, 2) - corner(t, 0), n = cross(e1, e2);
+    const double along = n.dot(path);
+    if (along == 0.0) return 1.0;
+    const double part = n.dot(corner(t, 0) - from) / along;
+    const Vector3 hit = from + part * path - corner(t, 0);
+    const double u = cross(hit, e2).dot(n) / n.squaredNorm(), v = cross(e1, hit).dot(n) / n.squaredNorm();
+    if (!(part >= 0.0 && part <= 1.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0)) return 1.0;
+    if (along < 0.0 && part < enters) {
+      enters = part;
+      first = t;
+    }
+    if (along > 0.0 && part > leaves) {
+      leaves = part;
+      last = t;
+    }
+    return 1.0;
+  });
+  if (first < 0 || last < 0 || !(enters < leaves)) return {};
+  const Vector3 middle = from + 0.5 * (enters + leaves) * path, out = (normal(first) + normal(last)).normalized();
+  Crossing found{0.5 * (enters + leaves), infinity};
+  for (const int t : {first, last}) {
+    const double depth = normal(t).dot(corner(t, 0) - middle) / normal(t).dot(out);
+    if (!(depth < found.depth)) continue;
+    found.depth = depth;
+    found.facet = t;
+    found.out = out;
+  }
+  if (found.facet < 0) return {};
+  found.weights =
+      closest_point(middle + found.depth * out, corner(found.facet, 0), corner(found.facet, 1), corner(found.facet, 2))
+          .weights;
+  return found.depth < 1.9 * other.depths[at(found.facet)] ? found : Crossing{};
+}
+
+template <class Visit>
+void InterfaceProblem::visit_crossings(const Body& own, const Body& other, Visit&& visit) const {
+  if (other.triangles.empty()) return;
+  const Box& bounds = other.bvh.bounds();
+  for (const Triangle& t : own.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (a > b) continue;  // the facet on the other side has this edge in the other direction
+      if (own.closed[at(a)] < infinity && own.closed[at(b)] < infinity) continue;
+      const Vector3 path = own.now[at(b)] - own.now[at(a)];
+      if (!bounds.is_crossed(own.now[at(a)], path, 0.0, 1.0)) continue;
+      const Crossing c = find_crossing(other, own.now[at(a)], own.now[at(b)]);
+      if (c.facet >= 0) visit(a, b, c);
+    }
+}
+
+/// Rows of edges that pressed, or that go through the other body although no vertex has entered.
+PALPATE_INLINE void InterfaceProblem::add_crossings(std::size_t k, std::size_t l) {
+  const int own = static_cast<int>(k), other = static_cast<int>(l);
+  for (const Row& r : rows_)
+    if (r.row.key.body == own && r.row.key.other == other && r.row.key.end >= 0 && r.force > 0.0)
+      geometry_.rows().push_back(r.row);
+  visit_crossings(bodies_[k], bodies_[l], [&](int a, int b, const Crossing& c) {
+    const InterfaceKey key{own, other, a, true, b};
+    const double length = bodies_[l].facet_length;
+    if (pressed_row(key) != nullptr || may_enter(bodies_[k], a, -c.depth, length) ||
+        may_enter(bodies_[k], b, -c.depth, length))
+      return;
+    const Triangle& corners = bodies_[l].triangles[at(c.facet)];
+    geometry_.rows().push_back({key,
+                                -c.out,
+                                0.0,
+                                {{own, a, c.along - 1.0},
+                                 {own, b, -c.along},
+                                 {other, corners[0], c.weights[0]},
+                                 {other, corners[1], c.weights[1]},
+                                 {other, corners[2], c.weights[2]}}});
+  });
+}
+
 PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
-  constexpr double allowed = 0.01;  // of a mean facet
+  constexpr double beside_closed = 0.03, elsewhere = 0.01;  // allowed, of a mean facet
+  bool found = false;
+  for (const Body& own : bodies_)
+    for (const Body& other : bodies_) {
+      if (&own == &other || found) continue;
+      const auto allowed = [&](std::size_t v) {
+        return (own.closed[v] < infinity ? beside_closed : elsewhere) * other.facet_length;
+      };
+      for (std::size_t v = 0; v < own.now.size() && !found; ++v)
+        found = find_nearest(other, own.now[v]).height < -allowed(v);
+      if (!found)
+        visit_crossings(own, other, [&](int a, int b, const Crossing& c) {
+          found = found || c.depth > std::max(allowed(at(a)), allowed(at(b)));
+        });
+    }
+  return found;
+}
+
+/// Whether tissues overlap, before they move each other, by a tenth of the thickness of the thinner one.
+PALPATE_INLINE bool InterfaceProblem::overlap_at_rest() {
+  constexpr double large = 0.2;  // of a depth, half of the thickness
+  for (Body& body : bodies_) {
+    for (std::size_t v = 0; v < body.now.size(); ++v)
+      body.now[v] = body.pose * body.tissue.surface().position(static_cast<int>(v));
+    body.bvh.refit(body.triangles, body.now);
+  }
   for (const Body& own : bodies_)
     for (const Body& other : bodies_)
-      if (&own != &other)
-        for (const Vector3& p : own.now)
-          if (find_nearest(other, p).height < -allowed * other.facet_length) return true;
+      for (int v = 0; &own != &other && v < static_cast<int>(own.now.size()); ++v) {
+        const NearestFacet b = find_opposite(own, other, v);
+        if (b.facet < 0) continue;
+        double depth = other.depths[at(b.facet)];
+        for (const int t : own.tissue.surface().triangles_at(v)) depth = std::min(depth, own.depths[at(t)]);
+        if (-b.height > large * depth) return true;
+      }
+  return false;
+}
+
+/// Whether two surfaces that press each other do so with a few rows only.
+PALPATE_INLINE bool InterfaceProblem::is_coarse() const noexcept {
+  constexpr int few = 7;
+  constexpr double considerable = 0.05;  // of all forces
+  double all = 0.0;
+  for (const Row& r : rows_) all += r.force;
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    for (std::size_t l = k; l < bodies_.size(); ++l) {
+      int pressing = 0;
+      double force = 0.0;
+      for (const Row& r : rows_)
+        if (r.force > 0.0 && r.side_of(static_cast<int>(k)) >= 0 && r.side_of(static_cast<int>(l)) >= 0 &&
+            (k != l || r.row.key.body == r.row.key.other)) {
+          ++pressing;
+          force += r.force;
+        }
+      if (pressing > 0 && pressing < few && force > considerable * all) return true;
+    }
   return false;
 }
 

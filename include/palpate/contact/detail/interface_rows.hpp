@@ -25,23 +25,23 @@ struct InterfaceTerm {
   double weight = 0.0;
 };
 
-/// Which surfaces a row is between, and at which vertex of the first one. A row of the vertex alone keeps it out of the
-/// other surface.
+/// Which surfaces a row is between, and at which vertex of the first one; or, with `end`, at an edge. A row of a vertex
+/// alone, or of an edge, keeps these out of the other surface.
 struct InterfaceKey {
   int body = 0, other = 0, vertex = 0;
   bool alone = false;
+  int end = -1;
   friend bool operator==(const InterfaceKey&, const InterfaceKey&) = default;
   friend auto operator<=>(const InterfaceKey&, const InterfaceKey&) = default;
 };
 
 /// The gap between two surfaces around a vertex of one of them: the mean over what lies opposite, weighted with the
-/// shape function of that vertex. The weights of one body add up to -1, those of the other one to 1, so that the forces
-/// of a row are in equilibrium.
+/// shape function of that vertex, along a mean of both normals in which a smooth surface counts more than an edge. The
+/// weights of one body add up to -1, those of the other one to 1, so that the forces of a row are in equilibrium.
 struct InterfaceRow {
   InterfaceKey key;
   Vector3 normal = Vector3::Zero();  ///< unit, outward at the first surface
   double area = 0.0;                 ///< that the row stands for [m^2]
-  double depth = 0.0;                ///< mean of what the surfaces may have entered there [m]
   std::vector<InterfaceTerm> terms{};
 };
 
@@ -62,6 +62,7 @@ class InterfaceRows {
   struct Overlap {
     int triangle = -1;
     double gap = 0.0, area = 0.0;       // mean
+    Vector3 normal = Vector3::Zero();   // of the other facet
     std::array<Point2, 3> projected{};  // corners of the other facet
     std::array<double, 3> heights{};    // of these corners above the facet
     std::array<Point2, 9> polygon{};
@@ -69,8 +70,9 @@ class InterfaceRows {
   };
   /// What is added up for the row at a vertex of the first surface.
   struct Sum {
-    Vector3 normal = Vector3::Zero();
-    double area = 0.0, depth = 0.0, facets = 0.0;
+    Vector3 normal = Vector3::Zero(), opposite = Vector3::Zero();
+    double area = 0.0, facets = 0.0;
+    Vector3 direction() const noexcept;
     std::vector<InterfaceTerm> terms{};
     void add(int body, int vertex, double weight);
   };

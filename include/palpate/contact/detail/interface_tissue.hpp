@@ -78,7 +78,8 @@ class InterfaceTissue {
   }
   /// For the thread that ticks.
   Status begin_tick() noexcept {
-    const Status status = moves() ? motion_->begin_tick(tissue_) : Status{};
+    if (!moves()) return {};
+    const Status status = motion_->begin_tick(tissue_);
     view_.look();
     return status;
   }

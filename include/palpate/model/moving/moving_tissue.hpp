@@ -330,9 +330,9 @@ class MovingTissue : public ModelBase {
   TripleBuffer<VectorX> drawn_;
   TripleBuffer<Forces> pressing_;
   struct OtherForces {
-    std::vector<VertexForce> item;  // of other tissues
-    bool changed = true;
-    Forces all;  // with those of the last tick
+    std::vector<VertexForce> item;          // of other tissues
+    bool changed = true, left_out = false;  // left out: forces, or their springs
+    Forces all;                             // with those of the last tick
   };
   std::unique_ptr<OtherForces> others_;  // null while no other tissue has touched this one
   std::vector<Triangle> triangles_;      // of the surface

@@ -154,7 +154,7 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
     if (was_slit && presses_beside_slit()) record_response(before, done);
   }
   Status status = done.status;
-  if (!corrected) status.set(StatusFlag::degraded_model);
+  if (!corrected || (others_ && others_->left_out)) status.set(StatusFlag::degraded_model);
   publish(status);
   ++steps_;
   return done;
@@ -178,6 +178,7 @@ PALPATE_INLINE void MovingTissue::drop_gone() noexcept {
 }
 
 PALPATE_INLINE void MovingTissue::set_contact_forces(std::span<const VertexForce> forces) {
+  const std::scoped_lock lock(changes_);
   if (!others_) others_ = std::make_unique<OtherForces>();
   others_->item.assign(forces.begin(), forces.end());
   others_->changed = true;
@@ -202,10 +203,11 @@ PALPATE_INLINE void MovingTissue::add_others() noexcept {
     else if (all.count < most_forces)
       all.item[all.count++] = f;
     else
-      has_room = false;
+      has_room = false;  // for the force, too
     if (has_room) all.point[all.points++] = {{f.vertex, f.vertex, f.vertex}, {1.0, 0.0, 0.0}, f.force};
   }
   if (!has_room) all.points = 0;
+  others_->left_out = !has_room;
 }
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.
