@@ -309,6 +309,25 @@ TEST_CASE("a tool feels a tissue with another one behind it, on any mesh, static
   CHECK(force(both) == Catch::Approx(reference).epsilon(0.05));
 }
 
+TEST_CASE("a tissue with inertia comes to rest on another one, also with short steps", "[contact][touching]") {
+  const auto rest = [](auto& below) {
+    Static above(box(side, 5e-3, {6, 6, 2}, 0.0), Scene().fix("x0").fix("x1").touch("z0").touch("z1"), linear(10e3));
+    above.set_pose(lowered(0.2e-3));
+    TouchingTissues tissues(below, above);
+    for (double time = 0.0; time < 0.4;) time += tissues.background_work().next;
+    CHECK(tissues.report().status.ok());
+    return sum(tissues.contact_forces(1), above.to_world())[2];
+  };
+  const Mesh<Tet4> pad = box(side, 10e-3, {5, 5, 3}, -10e-3);
+  const Scene scene = Scene().fix("z0").touch("z1");
+  Static still(pad, scene, linear(5e3));
+  const double expected = rest(still);
+  for (const double step : {0.001, 0.016}) {
+    Moving moving(pad, scene, NeoHookean{5e3, 0.45, 1000.0}, {}, QuasiNewtonParameters{.step = step});
+    CHECK(rest(moving) == Catch::Approx(expected).epsilon(0.05));
+  }
+}
+
 TEST_CASE("the force does not depend on how often the contact is solved", "[contact][touching]") {
   std::vector<double> forces;
   for (const double interval : {0.002, 0.02}) {
