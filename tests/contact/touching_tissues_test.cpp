@@ -454,6 +454,19 @@ TEST_CASE("an edge across an edge has the force of the two points where they mee
     CHECK(!tissues.report().status.has(StatusFlag::solver_not_converged));
     CHECK(sum(tissues.contact_forces(1), above.to_world())[2] == Catch::Approx(expected).epsilon(0.01));
     CHECK(deepest(tissues) < 0.01);
+    // The ridge slides along the other one, and off it.
+    for (int step = 0; step < 40; ++step) {
+      pose.translation()[0] += 0.3e-3;
+      above.set_pose(pose);
+      tissues.solve();
+      if (step == 4) {
+        const Vector3 now = sum(tissues.contact_forces(1), above.to_world());
+        const TouchingTissues fresh(below, above);
+        CHECK(now.norm() == Catch::Approx(fresh.report().force).epsilon(0.05));
+        CHECK(now[2] > 0.97 * now.norm());
+      }
+    }
+    CHECK(tissues.report().force == 0.0);
   }
 }
 

@@ -55,6 +55,7 @@ struct PointForce {
   std::array<double, 3> weights{};
   ModelVector force{};   ///< on the tissue [N]
   bool grasped = false;  ///< also pulled back
+  bool slides = false;   ///< without friction
 };
 
 }}  // namespace palpate

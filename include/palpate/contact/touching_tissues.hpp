@@ -9,6 +9,8 @@
 #include <palpate/core/thread_exchange.hpp>
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -68,18 +70,19 @@ class TouchingTissue {
   struct Forces {
     std::vector<VertexForce> item;
     std::size_t count = 0;
-    detail::VertexList near_vertices, pressed;  // of ticks since the surface was taken
+    detail::VertexCopy near_vertices, pressed;  // of ticks since the surface was taken
     std::span<const VertexForce> all() const noexcept { return {item.data(), count}; }
   };
   /// Of vertices whose compliance is ready for a tick; that of others is evaluated there.
   static constexpr std::size_t most_near = 512, most_pressed = 192;
 
-  explicit TouchingTissue(const detail::InterfaceTissue& tissue);
+  TouchingTissue(const detail::InterfaceTissue& tissue, int capacity);
 
   using Block = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>>;
   static Block restraint(const View& view, int v) noexcept {
     return {view.restraint.data() + 3 * static_cast<std::ptrdiff_t>(view.rows) * v, view.rows, 3};
   }
+  void take_view() noexcept;
   static Matrix3 restrained(const View& view, int i, int j, const Matrix3& c) noexcept;
   /// For the thread that solves: the surface as tools do not press it, with the rows closed as they are. With the
   /// forces of the last tick, its compliance gives the surface that was found.
@@ -95,10 +98,12 @@ class TouchingTissue {
   TripleBuffer<Forces> given_;
   TripleBuffer<std::vector<VertexForce>> drawn_;
   mutable detail::RequestedVertices near_;
+  mutable VectorX sum_;  // of Z f, a row each
   detail::RequestedVertices pressed_;
-  const View* newest_ = nullptr;  // published last: not written before the next one is
-  VectorX pushed_;                // at that time
+  const View* newest_ = nullptr;  // published last; stays unchanged until the next one is published
+  VectorX pushed_;                // at that time: sum of Z f
   std::vector<double> moved_;
+  Status of_tissue_;  // of the last begin_tick of a tissue that moves
   std::uint64_t taken_ = 0, published_ = 0;
   std::atomic<std::uint64_t> updates_{0};
   std::atomic<bool> slow_{false}, failed_{false};
@@ -115,19 +120,21 @@ class TouchingTissue {
 /// the last tick are taken, and all gaps are solved as one complementarity problem, without friction. Until the next
 /// solution the gaps that press stay closed: a tool feels a tissue with the compliance C - C J^T (J C J^T)^-1 J C. A
 /// steady force is thus that of one solution of all tissues, and its change is exact as long as no other gap opens or
-/// closes. Forces on one tissue reach the tools at another one with the next solution. Vertices and edges that enter
-/// another tissue, although the mean gaps are closed, have rows of their own. Contacts of few facets, and edge against
-/// edge, are coarse: docs/simulator.md.
+/// closes. Forces on one tissue reach the tools at another one with the next solution. Vertices and edges that would
+/// enter another tissue where no mean gap keeps them out have rows of their own. Contacts of few facets, and edge
+/// against edge, are coarse: docs/simulator.md.
 ///
 /// A session takes `group()`, a BackgroundWorker takes this object; the tissues need no worker of their own. Refers to
 /// the tissues, which must outlive it; a tissue belongs to one such object, and sessions use it through this one only.
-/// Poses, loads of static tissues and `reset` of moving ones must not change while a tick or a solution runs. The
-/// forces of the last tick stay until the next one: call `HapticServo::release` at the end.
+/// Poses and loads of static tissues must not change while a tick or a solution runs; after `reset` of a moving one,
+/// also not beside them, call that of this object. The forces of the last tick stay until the next one: call
+/// `HapticServo::release` at the end.
 class TouchingTissues {
  public:
-  /// Of at least two tissues, or one with self contact. Solves once; allocates. Throws unsupported for a tissue that is
-  /// cut or stiffens, and for a static one whose columns are not all stored; bad_argument for options that make no
-  /// sense; TissueClaim's error for a moving tissue that a servo uses.
+  /// Of at least two tissues, or one with self contact. Solves up to ten times; allocates. Throws unsupported for a
+  /// tissue that is cut or stiffens, and for a static one whose columns are not all stored; bad_argument for a tissue
+  /// without touchable surface and for options that make no sense; TissueClaim's error for a moving tissue that a servo
+  /// uses.
   template <class... T>
   requires(sizeof...(T) > 1 && (TissueModel<T> && ...)) explicit TouchingTissues(T&... tissues)
       : TouchingTissues(TissueContactOptions{}, tissues...) {}
@@ -146,6 +153,8 @@ class TouchingTissues {
   BackgroundStep background_work();
   /// Finds the contact forces for the forces of tools in the last tick, without a step. From the same thread.
   void solve();
+  /// Forgets all forces and solves again, after `reset` of a tissue. Not while a tick or a solution runs.
+  void reset();
   void report_slow(bool slow) noexcept;
   void report_failed(bool failed) noexcept;
 

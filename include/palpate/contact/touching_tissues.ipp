@@ -15,14 +15,17 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<TouchingTissue>);
 
-PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue)
+PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue, int capacity)
     : tissue_(tissue), claimed_(tissue_.view().claim()) {
   std::vector<int> all(static_cast<std::size_t>(tissue_.surface().vertex_count()));
   std::iota(all.begin(), all.end(), 0);
   if (!tissue_.can_touch_others())
     raise(SetupErrorKind::unsupported, "contact with other tissues for one that is cut or stiffens",
           "Use Condensed<...> or Implicit<...> for a tissue that touches others");
-  if (!tissue_.moves() && tissue_.view().require_columns(all).has(StatusFlag::degraded_model))
+  if (tissue_.surface().triangles().empty())
+    raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
+          "Name a surface group with Scene::touch");
+  if (!tissue_.moves() && !tissue_.view().require_columns(all).ok())
     raise(SetupErrorKind::unsupported, "contact with other tissues for one whose compliance columns are not all stored",
           "Use Condensed<...>, or ColumnFill::synchronous with compliance_slots for every touchable vertex");
   for (const int v : all) largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
@@ -38,8 +41,9 @@ PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tis
   views_.fill(view);
   near_ = {all.size(), most_near};
   pressed_ = {all.size(), most_pressed};
+  sum_.resize(capacity);
   given_.fill(
-      {std::vector<VertexForce>(all.size()), 0, detail::VertexList(most_near), detail::VertexList(most_pressed)});
+      {std::vector<VertexForce>(all.size()), 0, detail::VertexCopy(most_near), detail::VertexCopy(most_pressed)});
 }
 
 PALPATE_INLINE Matrix3 TouchingTissue::restrained(const View& view, int i, int j, const Matrix3& c) noexcept {
@@ -54,6 +58,7 @@ PALPATE_INLINE Status TouchingTissue::require_columns(std::span<const int> verti
 
 PALPATE_INLINE Matrix3 TouchingTissue::compliance(int i, int j) const noexcept {
   const View& view = views_.front();
+  near_.add(i);
   const Matrix3* const ready = view.near_compliance.find(i, j);
   return ready != nullptr ? *ready : restrained(view, i, j, tissue_.view().compliance(i, j));
 }
@@ -62,9 +67,13 @@ PALPATE_INLINE Vector3 TouchingTissue::displacement_of(int i, std::span<const Ve
   const View& view = views_.front();
   near_.add(i);
   Vector3 u(0.0, 0.0, 0.0), others = u;
+  auto sum = sum_.head(view.rows);
+  sum.setZero();
   view.near_compliance.multiply(i, forces, u, [&](const VertexForce& f) {
-    others += restrained(view, i, f.vertex, tissue_.view().compliance(i, f.vertex)) * f.force.in_model_axes();
+    others += tissue_.view().compliance(i, f.vertex) * f.force.in_model_axes();
+    sum += restraint(view, f.vertex).lazyProduct(f.force.in_model_axes());
   });
+  if (view.rows > 0) others -= restraint(view, i).transpose().lazyProduct(sum);
   return u + others;
 }
 
@@ -74,16 +83,21 @@ PALPATE_INLINE double TouchingTissue::compliance_bound(int j) const noexcept {
 }
 
 PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
-  Status status = tissue_.begin_tick() | ticked_;
-  if (views_.update()) {
-    ++taken_;
-    near_.clear();
-    pressed_.clear();
-  }
-  status |= views_.front().status;
+  if (views_.update()) take_view();
+  Status status = of_tissue_ | ticked_ | views_.front().status;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
   if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
   return status;
+}
+
+/// A tissue that moves has another compliance after every step: it is taken together with that of the contact.
+PALPATE_INLINE void TouchingTissue::take_view() noexcept {
+  of_tissue_ = tissue_.begin_tick();
+  ++taken_;
+  near_.clear();
+  pressed_.clear();
+  for (int v = 0; tissue_.moves() && v < contact_surface().vertex_count(); ++v)
+    largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
 }
 
 PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces,
@@ -122,15 +136,14 @@ PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, s
   view.rows = problem.pressing();
   problem.restraint(body, view.restraint);
   problem.displacement(body, moved_);
-  newest_ = &view;
-  pushed_ = pushed_by(view, given.all());
+  VectorX pushed = pushed_by(view, given.all());
   std::vector<Vector3> free(tissue_.surface().positions()), pressed(free);
   for (std::size_t v = 0; v < free.size(); ++v) {
     const int i = static_cast<int>(v);
     const Vector3 moved(moved_[3 * v], moved_[3 * v + 1], moved_[3 * v + 2]);
     pressed[v] = problem.base(body)[v] + moved;
     free[v] += moved;
-    if (view.rows > 0) free[v] += restraint(view, i).transpose() * pushed_;
+    if (view.rows > 0) free[v] += restraint(view, i).transpose() * pushed;
   }
   view.near_compliance.set(given.near_vertices.all(), given.pressed.all(),
                            [&](int i, int j) { return restrained(view, i, j, tissue_.compliance(i, j)); });
@@ -138,8 +151,10 @@ PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, s
   view.surface.expect(pressed, given.all());
   view.surface.set_force_accuracy(view.rows > 0 ? nullptr : accuracy_);  // measured without other tissues
   view.status = status;
-  views_.publish();
   problem.forces(body, drawn_.back());
+  pushed_.swap(pushed);
+  newest_ = &view;
+  views_.publish();
   drawn_.publish();
   updates_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -162,7 +177,7 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
         raise(SetupErrorKind::bad_argument, "contact of a tissue with itself as if it were two",
               "Name every tissue once, and set self_contact where it may touch itself");
   for (const detail::InterfaceTissue& t : tissues) {
-    tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t)));
+    tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t, options.capacity)));
     next_step_.push_back(t.moves() ? 0.0 : infinity);
   }
   problem_ = std::make_unique<detail::InterfaceProblem>(
@@ -182,6 +197,12 @@ PALPATE_INLINE TouchingTissue& TouchingTissues::tissue(std::size_t k) {
     raise(SetupErrorKind::index_out_of_range,
           "tissue " + std::to_string(k) + " of " + std::to_string(tissues_.size()) + " that touch each other");
   return *tissues_[k];
+}
+
+PALPATE_INLINE void TouchingTissues::reset() {
+  for (const auto& t : tissues_) t->end_tick({});
+  problem_->clear();
+  solve();
 }
 
 PALPATE_INLINE void TouchingTissues::report_slow(bool slow) noexcept {
@@ -221,7 +242,9 @@ PALPATE_INLINE void TouchingTissues::take_forces() {
 PALPATE_INLINE void TouchingTissues::step(std::size_t k) {
   take_forces();
   VectorX pushed = VectorX::Zero(problem_->pressing());
-  for (const auto& t : tissues_) pushed += t->pushed_by(*t->newest_, t->given_.front().all()) - t->pushed_;
+  for (const auto& t : tissues_)
+    if (t->pushed_.size() == pushed.size())  // else a solution has failed
+      pushed += TouchingTissue::pushed_by(*t->newest_, t->given_.front().all()) - t->pushed_;
   problem_->follow(pushed);
   problem_->forces(k, forces_);
   tissues_[k]->tissue_.set_contact_forces(forces_);

@@ -5,7 +5,10 @@
 #include <palpate/contact/detail/interface_rows.hpp>
 #include <palpate/contact/detail/interface_tissue.hpp>
 
+#include <array>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
@@ -18,9 +21,9 @@ struct InterfaceLimits {
 };
 
 /// Finds the forces between bodies whose compliance is known, so that none enters another one: Signorini's conditions
-/// on mortar gaps, and on vertices that enter another body although the mean gap around them is closed. W = sum of J C
-/// J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals and weights are those of the
-/// deformed surfaces: the problem is solved again until these stay. Rows that hardly change keep their columns J C.
+/// on mortar gaps, and on vertices and edges that would enter another body where no mean gap keeps them out. W = sum of
+/// J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals and weights are those of
+/// the deformed surfaces: the problem is solved again until these stay. Rows that hardly change keep their columns J C.
 /// Allocates; for a background thread.
 class InterfaceProblem {
  public:
@@ -54,9 +57,11 @@ class InterfaceProblem {
   std::span<const Vector3> base(std::size_t body) const noexcept { return bodies_[body].base; }
   /// Displacement by the rows' forces, 3 per vertex, model frame [m].
   void displacement(std::size_t body, std::vector<double>& u) const;
-  /// What a change of the forces of tools does to the rows' forces, while the same ones press: `pushed` is the sum of
-  /// Z f over the changes of all bodies. Of all changes since `solve`; until the next one.
-  void follow(const VectorX& pushed) noexcept;
+  /// Updates `present` for forces of tools that have changed since `solve`, with the same rows closed. `pushed`: sum of
+  /// Z f over the changes of all bodies.
+  void follow(const VectorX& pushed);
+  /// Forgets all rows.
+  void clear() noexcept { rows_.clear(); }
   /// The rows' forces on the vertices of a body, as `follow` has them.
   void forces(std::size_t body, std::vector<VertexForce>& forces) const;
   /// While the rows that press stay closed, a body has the compliance C_ij - Z_i^T Z_j. Z has as many rows as press;
@@ -70,6 +75,7 @@ class InterfaceProblem {
     Eigen::Isometry3d pose;
     std::vector<Vector3> base{}, now{};  // under the loads of tools, model frame; with rows, world frame
     std::vector<Triangle> triangles{};
+    std::vector<std::array<int, 2>> edges{};
     std::vector<double> depths{};
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
@@ -84,7 +90,7 @@ class InterfaceProblem {
   double move_bodies();
   bool keeps_shape() const noexcept;
   void find_rows();
-  void find_responses(std::span<const std::size_t> fresh);
+  void find_responses();
   void limit_rows(Status& status);
   void assemble();
   bool find_forces();
@@ -111,6 +117,7 @@ class InterfaceProblem {
   template <class Visit>
   void visit_crossings(const Body& own, const Body& other, Visit&& visit) const;
   void add_crossings(std::size_t own, std::size_t other);
+  bool is_opposite(const InterfaceRow& row, double length) const noexcept;
   void note_closed(std::span<const InterfaceRow> rows);
   bool may_enter(const Body& body, int vertex, double height, double length) const noexcept;
   const Row* pressed_row(const InterfaceKey& key) const noexcept;
@@ -126,7 +133,8 @@ class InterfaceProblem {
   std::vector<Row> rows_, before_;  // sorted by key
   std::vector<std::size_t> pressing_;
   ComplementarityProblem problem_;
-  bool moved_at_rest_ = true, overlaps_ = false;  // since the overlap was found; what was found
+  bool moved_at_rest_ = true;  // since the overlap at rest was found
+  bool overlaps_ = false;      // at rest
 };
 
 }}}  // namespace palpate::detail

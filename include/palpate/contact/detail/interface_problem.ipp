@@ -28,6 +28,11 @@ PALPATE_INLINE InterfaceProblem::Body InterfaceProblem::make_body(const Interfac
   body.bvh = surface.bvh();
   body.depths =
       interface_depths(body.triangles, surface.positions(), boundary.triangles(), boundary.positions(), boundary.bvh());
+  for (const Triangle& t : body.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      body.edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  std::ranges::sort(body.edges);
+  body.edges.erase(std::unique(body.edges.begin(), body.edges.end()), body.edges.end());
   for (const double depth : body.depths) body.deepest = std::max(body.deepest, depth);
   for (int t = 0; t < static_cast<int>(body.triangles.size()); ++t) body.facet_length += surface.facet_length(t);
   body.facet_length /= std::max(1.0, static_cast<double>(body.triangles.size()));
@@ -39,15 +44,16 @@ PALPATE_INLINE void InterfaceProblem::load(std::size_t k, std::span<const Vertex
   const Eigen::Isometry3d before = body.pose;
   body.pose = body.tissue.view().to_world();
   const ContactSurface& surface = body.tissue.surface();
-  const std::uint64_t revision = body.tissue.moves() ? 0 : surface.revision();
-  if (revision != body.revision || before.matrix() != body.pose.matrix()) moved_at_rest_ = true;
-  body.revision = revision;
+  const bool is_placed = before.matrix() != body.pose.matrix();
+  const bool is_renewed = surface.revision() != body.revision;
+  body.revision = surface.revision();
+  if (is_placed || (is_renewed && !body.tissue.moves())) moved_at_rest_ = true;
+  if (is_placed || (is_renewed && body.tissue.moves())) mark_stale(k);
   for (int v = 0; v < surface.vertex_count(); ++v)
     body.base[at(v)] = surface.position(v) + body.tissue.displacement(v, tools);
-  if (body.tissue.moves()) mark_stale(k);
 }
 
-/// The compliance of a tissue that moves changes with every step.
+/// The compliance of a tissue that moves changes with every step; columns are in the frame of the body.
 PALPATE_INLINE void InterfaceProblem::mark_stale(std::size_t k) noexcept {
   for (Row& r : rows_) r.stale = r.stale || r.side_of(static_cast<int>(k)) >= 0;
 }
@@ -141,28 +147,27 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
   std::ranges::sort(geometry_.rows(), {}, &InterfaceRow::key);
   before_.swap(rows_);
   rows_.clear();
-  std::vector<std::size_t> fresh;
   auto old = before_.begin();
   for (InterfaceRow& row : geometry_.rows()) {
     while (old != before_.end() && old->row.key < row.key) ++old;
     const bool known = old != before_.end() && old->row.key == row.key;
     rows_.push_back({std::move(row), known ? old->force : 0.0});
-    if (known && !old->stale && is_like(old->row, rows_.back().row)) {
-      rows_.back().row = old->row;
-      rows_.back().response.swap(old->response);
-    } else {
-      fresh.push_back(rows_.size() - 1);
-    }
+    if (!known || old->stale || !is_like(old->row, rows_.back().row)) continue;
+    rows_.back().row = old->row;
+    rows_.back().response.swap(old->response);
   }
-  find_responses(fresh);
 }
 
-PALPATE_INLINE void InterfaceProblem::find_responses(std::span<const std::size_t> fresh) {
+/// Of rows that have none.
+PALPATE_INLINE void InterfaceProblem::find_responses() {
   struct Load {
     int vertex;
     std::size_t row, side;
     Vector3 force;
   };
+  std::vector<std::size_t> fresh;
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (rows_[r].response.front().empty()) fresh.push_back(r);
   std::vector<Load> loads;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     loads.clear();
@@ -253,6 +258,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
     status = {};
     find_rows();
     limit_rows(status);
+    find_responses();
     assemble();
     solved = find_forces();
     change = move_bodies();
@@ -284,6 +290,7 @@ PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(con
   };
   NearestFacet found;
   found.facet = other.bvh.nearest(p, [&](int t) { return from(t, weights(t)).squaredNorm(); });
+  if (found.facet < 0) return {};
   found.weights = weights(found.facet);
   const Vector3 path = from(found.facet, found.weights), first = corner(found.facet, 0);
   found.normal = cross(corner(found.facet, 1) - first, corner(found.facet, 2) - first).normalized();
@@ -319,7 +326,6 @@ PALPATE_INLINE const InterfaceProblem::Row* InterfaceProblem::pressed_row(const 
 PALPATE_INLINE void InterfaceProblem::note_closed(std::span<const InterfaceRow> rows) {
   for (Body& body : bodies_) body.closed.assign(body.now.size(), infinity);
   for (const InterfaceRow& row : rows) {
-    if (row.key.alone) continue;
     double gap = 0.0;
     for (const InterfaceTerm& t : row.terms) gap += t.weight * row.normal.dot(bodies_[at(t.body)].now[at(t.vertex)]);
     if (gap >= 0.0 && pressed_row(row.key) == nullptr) continue;
@@ -407,29 +413,33 @@ template <class Visit>
 void InterfaceProblem::visit_crossings(const Body& own, const Body& other, Visit&& visit) const {
   if (other.triangles.empty()) return;
   const Box& bounds = other.bvh.bounds();
-  for (const Triangle& t : own.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = t[k], b = t[(k + 1) % 3];
-      if (a > b) continue;  // the facet on the other side has this edge in the other direction
-      if (own.closed[at(a)] < infinity && own.closed[at(b)] < infinity) continue;
-      const Vector3 path = own.now[at(b)] - own.now[at(a)];
-      if (!bounds.is_crossed(own.now[at(a)], path, 0.0, 1.0)) continue;
-      const Crossing c = find_crossing(other, own.now[at(a)], own.now[at(b)]);
-      if (c.facet >= 0) visit(a, b, c);
-    }
+  for (const auto& [a, b] : own.edges) {
+    if (own.closed[at(a)] < infinity && own.closed[at(b)] < infinity) continue;
+    const Vector3 path = own.now[at(b)] - own.now[at(a)];
+    if (!bounds.is_crossed(own.now[at(a)], path, 0.0, 1.0)) continue;
+    const Crossing c = find_crossing(other, own.now[at(a)], own.now[at(b)]);
+    if (c.facet >= 0) visit(a, b, c);
+  }
 }
 
-/// Rows of edges that pressed, or that go through the other body although no vertex has entered.
+/// Whether the points of a row of an edge are still opposite each other, so that it keeps them while they touch.
+PALPATE_INLINE bool InterfaceProblem::is_opposite(const InterfaceRow& row, double length) const noexcept {
+  constexpr double beside = 0.1, apart = 0.25;  // of a mean facet
+  Vector3 between(0.0, 0.0, 0.0);
+  for (const InterfaceTerm& t : row.terms) between += t.weight * bodies_[at(t.body)].now[at(t.vertex)];
+  const double gap = row.normal.dot(between);
+  return gap < apart * length && (between - gap * row.normal).norm() < beside * length;
+}
+
+/// Rows of edges that go through the other body although no vertex has entered, and of those that pressed.
 PALPATE_INLINE void InterfaceProblem::add_crossings(std::size_t k, std::size_t l) {
   const int own = static_cast<int>(k), other = static_cast<int>(l);
-  for (const Row& r : rows_)
-    if (r.row.key.body == own && r.row.key.other == other && r.row.key.end >= 0 && r.force > 0.0)
-      geometry_.rows().push_back(r.row);
+  const double length = bodies_[l].facet_length;
+  const std::size_t first = geometry_.rows().size();
   visit_crossings(bodies_[k], bodies_[l], [&](int a, int b, const Crossing& c) {
     const InterfaceKey key{own, other, a, true, b};
-    const double length = bodies_[l].facet_length;
-    if (pressed_row(key) != nullptr || may_enter(bodies_[k], a, -c.depth, length) ||
-        may_enter(bodies_[k], b, -c.depth, length))
+    if (pressed_row(key) == nullptr &&
+        (may_enter(bodies_[k], a, -c.depth, length) || may_enter(bodies_[k], b, -c.depth, length)))
       return;
     const Triangle& corners = bodies_[l].triangles[at(c.facet)];
     geometry_.rows().push_back({key,
@@ -441,6 +451,16 @@ PALPATE_INLINE void InterfaceProblem::add_crossings(std::size_t k, std::size_t l
                                  {other, corners[1], c.weights[1]},
                                  {other, corners[2], c.weights[2]}}});
   });
+  const std::size_t crossing = geometry_.rows().size();
+  for (const Row& r : rows_) {
+    const InterfaceKey& key = r.row.key;
+    if (key.body != own || key.other != other || key.end < 0 || !(r.force > 0.0) || !is_opposite(r.row, length))
+      continue;
+    const auto begin = geometry_.rows().begin() + static_cast<std::ptrdiff_t>(first),
+               end = geometry_.rows().begin() + static_cast<std::ptrdiff_t>(crossing);
+    if (std::none_of(begin, end, [&](const InterfaceRow& row) { return row.key == key; }))
+      geometry_.rows().push_back(r.row);
+  }
 }
 
 PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
@@ -526,7 +546,7 @@ PALPATE_INLINE void InterfaceProblem::factor_pressing() {
     }
 }
 
-PALPATE_INLINE void InterfaceProblem::follow(const VectorX& pushed) noexcept {
+PALPATE_INLINE void InterfaceProblem::follow(const VectorX& pushed) {
   const std::size_t n = pressing_.size();
   if (static_cast<std::size_t>(pushed.size()) != n) return;
   answer_.assign(pushed.begin(), pushed.end());

@@ -4,6 +4,8 @@
 #include <palpate/contact/detail/bvh.hpp>
 
 #include <array>
+#include <compare>
+#include <cstddef>
 #include <span>
 #include <vector>
 

@@ -30,7 +30,7 @@ inline bool contains(const std::array<Point2, 3>& triangle, const Point2& p) noe
 
 /// Cuts a convex polygon of `count` corners by a line; what is left of it stays (Sutherland and Hodgman 1974).
 inline int clip(std::array<Point2, 9>& polygon, int count, const Point2& a, const Point2& b) noexcept {
-  std::array<Point2, 9> cut;
+  std::array<Point2, 9> cut{};
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const Point2 &p = polygon[static_cast<std::size_t>(i)], &q = polygon[static_cast<std::size_t>((i + 1) % count)];
@@ -82,7 +82,7 @@ PALPATE_INLINE void InterfaceRows::find_overlaps(const InterfaceSurface& first, 
   const double twice = interface_geometry::turn(facet[0], facet[1], facet[2]);
   const double depth = first.depths[static_cast<std::size_t>(t)];
   const auto visit = [&](int other) {
-    if (&first == &second || first.body == second.body) {
+    if (first.body == second.body) {
       if (other <= t || interface_geometry::share_vertex(own, second.triangles[static_cast<std::size_t>(other)]))
         return 1.0;
     }

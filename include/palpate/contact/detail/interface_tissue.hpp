@@ -1,10 +1,12 @@
 // A tissue that touches others, for the thread that solves their contact.
 #pragma once
 
+#include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/tissue_view.hpp>
 
+#include <concepts>
+#include <cstddef>
 #include <span>
-#include <type_traits>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
@@ -18,7 +20,7 @@ concept MovesBesideOthers = AnnouncesChanges<T> && HasBackgroundWork<T> &&
   { constant.newest_compliance(0, 0) }
   noexcept->FixedExpression<3, 3>;
   tissue.set_contact_forces(forces);
-};
+} && !OutOfDate<decltype(&T::compliance), decltype(&T::newest_compliance)>;
 
 struct MotionFunctions {
   Status (*begin_tick)(void*) noexcept;

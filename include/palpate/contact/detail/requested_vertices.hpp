@@ -4,6 +4,7 @@
 #include <palpate/core/config.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -38,10 +39,10 @@ class RequestedVertices {
 };
 
 /// A copy of such a list, in room that is allocated once.
-class VertexList {
+class VertexCopy {
  public:
-  VertexList() = default;
-  explicit VertexList(std::size_t most) : item_(most) {}
+  VertexCopy() = default;
+  explicit VertexCopy(std::size_t most) : item_(most) {}
   void copy(std::span<const int> vertices) noexcept {
     count_ = std::min(vertices.size(), item_.size());
     std::copy_n(vertices.begin(), count_, item_.begin());

@@ -8,11 +8,11 @@
 #include <palpate/concepts/tissue_claim.hpp>
 #include <palpate/contact/contact.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/detail/near_compliance.hpp>
 #include <palpate/core/thread_exchange.hpp>
 #include <palpate/model/model_base.hpp>
 #include <palpate/model/moving/detail/contact_springs.hpp>
 #include <palpate/model/moving/detail/force_agreement.hpp>
-#include <palpate/contact/detail/near_compliance.hpp>
 #include <palpate/model/moving/detail/secant_compliance.hpp>
 #include <palpate/model/moving/detail/split_vertices.hpp>
 #include <palpate/model/moving/detail/surface_stretch.hpp>
@@ -88,8 +88,9 @@ class MovingTissue : public ModelBase {
 
   // The thread that steps, between two steps: for contact with other tissues (TouchingTissues)
 
-  /// Forces of other tissues on the surface, one per vertex, which act from the next step on besides those of tools.
-  /// Allocates at the first call.
+  /// Forces of other tissues on the surface, one per vertex, which act from the next step on besides those of tools,
+  /// without friction. Together with the tools' at most most_points, else all are loads (degraded_model). Allocates
+  /// where there are more than before.
   void set_contact_forces(std::span<const VertexForce> forces);
   /// The surface after the last step without the forces on it, and its compliance. Valid until the next step.
   const ContactSurface& newest_surface() const noexcept { return newest().surface; }

@@ -180,8 +180,11 @@ PALPATE_INLINE void MovingTissue::drop_gone() noexcept {
 PALPATE_INLINE void MovingTissue::set_contact_forces(std::span<const VertexForce> forces) {
   const std::scoped_lock lock(changes_);
   if (!others_) others_ = std::make_unique<OtherForces>();
+  const auto same = [](const VertexForce& a, const VertexForce& b) {
+    return a.vertex == b.vertex && a.force == b.force;
+  };
+  others_->changed = others_->changed || !std::ranges::equal(others_->item, forces, same);
   others_->item.assign(forces.begin(), forces.end());
-  others_->changed = true;
 }
 
 /// Where there is no room for the points, the forces act as loads.
@@ -191,9 +194,10 @@ PALPATE_INLINE void MovingTissue::add_others() noexcept {
   others_->changed = false;
   if (all.view == nullptr) {  // before the first tick
     all.view = &newest();
-    all.number = changed_.number;
+    all.number = all.view->number;
   }
-  bool has_room = (all.points > 0 || all.count == 0) && all.points + others_->item.size() <= most_points;
+  const bool has_points = all.points > 0 || all.count == 0;
+  bool has_room = all.points + others_->item.size() <= most_points;
   const std::size_t ticked = all.count;
   for (const VertexForce& f : others_->item) {
     const auto end = all.item.begin() + static_cast<std::ptrdiff_t>(ticked);
@@ -203,11 +207,11 @@ PALPATE_INLINE void MovingTissue::add_others() noexcept {
     else if (all.count < most_forces)
       all.item[all.count++] = f;
     else
-      has_room = false;  // for the force, too
-    if (has_room) all.point[all.points++] = {{f.vertex, f.vertex, f.vertex}, {1.0, 0.0, 0.0}, f.force};
+      has_room = false;  // not even for the force
+    if (has_room) all.point[all.points++] = {{f.vertex, f.vertex, f.vertex}, {1.0, 0.0, 0.0}, f.force, false, true};
   }
-  if (!has_room) all.points = 0;
-  others_->left_out = !has_room;
+  if (!has_room || !has_points) all.points = 0;
+  others_->left_out = !has_room && takes_springs_;
 }
 
 /// Forces on a surface that a cut has changed since are loads: their points may no longer exist.

@@ -63,7 +63,7 @@ PALPATE_INLINE void ContactSprings::add(const PointForce& point, const Vector3& 
   spring.reach = direction.dot(moved) + point.force.in_model_axes().norm() / spring.stiffness;
   springs_.push_back(spring);
   forces_of_.push_back(of);
-  if (!has_friction || point.grasped) return;
+  if (!has_friction || point.grasped || point.slides) return;
   const Vector3 across = direction.unitOrthogonal();
   spring.pulls = true;
   for (const Vector3& axis : {across, cross(direction, across)}) {
