@@ -19,8 +19,8 @@ struct GroupMember {
 
 /// Tissues of any types: static, moving, cut, stiffening. A HapticServo or HapticSession takes a group where it takes a
 /// tissue. Each has its own pose, background worker and friction. A tool between two organs feels both, with one force
-/// and one gate; organs touch each other where they are a TouchingTissues. A servo or session refers to the tissues, not to the group, which
-/// may be a temporary.
+/// and one gate; organs touch each other where they are a TouchingTissues. A servo or session refers to the tissues,
+/// not to the group, which may be a temporary.
 class TissueGroup {
  public:
   TissueGroup() = default;
