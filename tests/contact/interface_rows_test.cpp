@@ -55,6 +55,7 @@ TEST_CASE("rows between meshes that do not match have the area, the gap and weig
   // The upper one is tilted: its gap is linear along x and y.
   for (Vector3& x : upper.positions) x[2] += 0.05 * x[0] - 0.03 * x[1];
   upper.update();
+  const Vector3 tilted = Vector3(-0.05, 0.03, 1.0).normalized();  // its normal, reversed
   InterfaceRows rows;
   rows.add(lower.surface(0), upper.surface(1), 1.0);
   REQUIRE(!rows.rows().empty());
@@ -64,11 +65,12 @@ TEST_CASE("rows between meshes that do not match have the area, the gap and weig
     for (const auto& t : row.terms) (t.body == 0 ? own : other) += t.weight;
     CHECK(own == Catch::Approx(-1.0).epsilon(1e-12));
     CHECK(other == Catch::Approx(1.0).epsilon(1e-12));
-    CHECK((row.normal - Vector3(0.0, 0.0, 1.0)).norm() < 1e-12);
+    CHECK((row.normal - (Vector3(0.0, 0.0, 1.0) + tilted).normalized()).norm() < 1e-12);
     area += row.area;
-    mean += row.area * gap_of(row, [&](int body, int v) {
-              return (body == 0 ? lower : upper).positions[static_cast<std::size_t>(v)];
-            });
+    const auto position = [&](int body, int v) {
+      return (body == 0 ? lower : upper).positions[static_cast<std::size_t>(v)];
+    };
+    mean += row.area * gap_of(row, position) / row.normal[2];  // along the normal of the lower one
   }
   CHECK(area == Catch::Approx(0.7 * 0.7).epsilon(1e-12));
   // The mean of a linear function over the overlap is that in its middle.
