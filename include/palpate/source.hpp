@@ -29,6 +29,7 @@
 #include <palpate/contact/detail/contact_rows_directions.ipp>
 #include <palpate/contact/detail/contact_samples.ipp>
 #include <palpate/contact/detail/interface_problem.ipp>
+#include <palpate/contact/detail/interface_problem_entered.ipp>
 #include <palpate/contact/detail/interface_rows.ipp>
 #include <palpate/contact/detail/point_levels.ipp>
 #include <palpate/contact/detail/proxy_motion.ipp>

@@ -38,7 +38,7 @@ class TouchingTissue {
   Status require_columns(std::span<const int> vertices) noexcept;
   Matrix3 compliance(int i, int j) const noexcept;
   Vector3 displacement_of(int i, std::span<const VertexForce> forces) const noexcept;
-  std::uint64_t compliance_revision() const noexcept { return taken_; }
+  std::uint64_t compliance_revision() const noexcept { return revision_; }
   /// No block of a symmetric positive matrix is larger than the geometric mean of those on the diagonal.
   double compliance_bound(int j) const noexcept;
   double compliance_floor() const noexcept { return tissue_.view().compliance_floor(); }
@@ -104,7 +104,7 @@ class TouchingTissue {
   VectorX pushed_;                // at that time: sum of Z f
   std::vector<double> moved_;
   Status of_tissue_;  // of the last begin_tick of a tissue that moves
-  std::uint64_t taken_ = 0, published_ = 0;
+  std::uint64_t revision_ = 0, published_ = 0;
   std::atomic<std::uint64_t> updates_{0};
   std::atomic<bool> slow_{false}, failed_{false};
   Status ticked_;

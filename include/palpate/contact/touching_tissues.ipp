@@ -93,7 +93,7 @@ PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
 /// A tissue that moves has another compliance after every step: it is taken together with that of the contact.
 PALPATE_INLINE void TouchingTissue::take_view() noexcept {
   of_tissue_ = tissue_.begin_tick();
-  ++taken_;
+  ++revision_;
   near_.clear();
   pressed_.clear();
   for (int v = 0; tissue_.moves() && v < contact_surface().vertex_count(); ++v)
@@ -180,8 +180,7 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
     tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t, options.capacity)));
     next_step_.push_back(t.moves() ? 0.0 : infinity);
   }
-  problem_ = std::make_unique<detail::InterfaceProblem>(
-      std::move(tissues), detail::InterfaceLimits{.capacity = options.capacity, .self_contact = options.self_contact});
+  problem_ = std::make_unique<detail::InterfaceProblem>(std::move(tissues), options.capacity, options.self_contact);
   constexpr int most_solutions = 10;  // of bodies that overlap at first
   for (int i = 0; i < most_solutions && (i == 0 || report_.status.has(StatusFlag::solver_not_converged)); ++i) solve();
 }

@@ -13,13 +13,6 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-struct InterfaceLimits {
-  int capacity = 512;
-  int maximum_iterations = 8;
-  double tolerance = 1e-3;  ///< of the displacement between two linearisations
-  bool self_contact = false;
-};
-
 /// Finds the forces between bodies whose compliance is known, so that none enters another one: Signorini's conditions
 /// on mortar gaps, and on vertices and edges that would enter another body where no mean gap keeps them out. W = sum of
 /// J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals and weights are those of
@@ -27,8 +20,9 @@ struct InterfaceLimits {
 /// Allocates; for a background thread.
 class InterfaceProblem {
  public:
-  /// The tissues must outlive it. The compliance columns of all their vertices are available.
-  InterfaceProblem(std::vector<InterfaceTissue> tissues, const InterfaceLimits& limits);
+  /// Of at most `capacity` rows; with self contact also of each tissue with itself. The tissues must outlive it. The
+  /// compliance columns of all their vertices are available.
+  InterfaceProblem(std::vector<InterfaceTissue> tissues, int capacity, bool self_contact);
 
   /// For a present surface and pose of a tissue, under these forces of tools.
   void load(std::size_t body, std::span<const VertexForce> tools);
@@ -40,7 +34,7 @@ class InterfaceProblem {
   struct Row {
     InterfaceRow row;
     double force = 0.0;                             ///< >= 0 [N]
-    double present = 0.0;                           ///< the same for the forces of tools since: see `follow`
+    double followed = 0.0;                          ///< the same for the forces of tools since: see `follow`
     double gap = 0.0;                               ///< without the forces of rows [m]
     std::array<std::vector<double>, 2> response{};  ///< C J^T of both bodies, 3 per vertex [m/N]; of one where it
                                                     ///< touches itself
@@ -57,16 +51,17 @@ class InterfaceProblem {
   std::span<const Vector3> base(std::size_t body) const noexcept { return bodies_[body].base; }
   /// Displacement by the rows' forces, 3 per vertex, model frame [m].
   void displacement(std::size_t body, std::vector<double>& u) const;
-  /// Updates `present` for forces of tools that have changed since `solve`, with the same rows closed. `pushed`: sum of
-  /// Z f over the changes of all bodies.
+  /// Updates `followed` for forces of tools that have changed since `solve`, with the same rows closed. `pushed`: sum
+  /// of Z f over the changes of all bodies.
   void follow(const VectorX& pushed);
   /// Forgets all rows.
   void clear() noexcept { rows_.clear(); }
   /// The rows' forces on the vertices of a body, as `follow` has them.
   void forces(std::size_t body, std::vector<VertexForce>& forces) const;
+  /// Number of rows that press.
+  int pressing() const noexcept { return static_cast<int>(pressing_.size()); }
   /// While the rows that press stay closed, a body has the compliance C_ij - Z_i^T Z_j. Z has as many rows as press;
   /// the three columns of every vertex are contiguous. O(rows^2 x vertices).
-  int pressing() const noexcept { return static_cast<int>(pressing_.size()); }
   void restraint(std::size_t body, std::vector<double>& z);
 
  private:
@@ -79,9 +74,12 @@ class InterfaceProblem {
     std::vector<double> depths{};
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
-    std::uint64_t revision = 0;                // of the surface of a static tissue
-    std::vector<double> closed{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
+    std::uint64_t revision = 0;                // of the surface
+    std::vector<double>
+        closed_gap{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
   };
+  /// Of a depth, half of the thickness: what is deeper has come through from the other side.
+  static constexpr double beyond_middle = 1.9;
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   static Body make_body(const InterfaceTissue& tissue);
   InterfaceSurface surface(std::size_t body) const noexcept;
@@ -126,13 +124,14 @@ class InterfaceProblem {
   bool has_entered() const noexcept;
   void factor_pressing();
 
-  InterfaceLimits limits_;
   std::vector<Body> bodies_;
   std::vector<double> column_, moved_, factor_, chunk_, answer_;
   InterfaceRows geometry_;
   std::vector<Row> rows_, before_;  // sorted by key
   std::vector<std::size_t> pressing_;
   ComplementarityProblem problem_;
+  int capacity_;
+  bool self_contact_;
   bool moved_at_rest_ = true;  // since the overlap at rest was found
   bool overlaps_ = false;      // at rest
 };
@@ -141,4 +140,5 @@ class InterfaceProblem {
 
 #if PALPATE_HEADER_ONLY
 #include <palpate/contact/detail/interface_problem.ipp>
+#include <palpate/contact/detail/interface_problem_entered.ipp>
 #endif

@@ -13,8 +13,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 using InterfaceVector = Eigen::Map<Eigen::VectorXd>;
 using ConstInterfaceVector = Eigen::Map<const Eigen::VectorXd>;
 
-PALPATE_INLINE InterfaceProblem::InterfaceProblem(std::vector<InterfaceTissue> tissues, const InterfaceLimits& limits)
-    : limits_(limits), problem_(limits.capacity) {
+PALPATE_INLINE InterfaceProblem::InterfaceProblem(std::vector<InterfaceTissue> tissues, int capacity, bool self_contact)
+    : problem_(capacity), capacity_(capacity), self_contact_(self_contact) {
   for (const InterfaceTissue& tissue : tissues) bodies_.push_back(make_body(tissue));
   for (std::size_t k = 0; k < bodies_.size(); ++k) load(k, {});
 }
@@ -82,7 +82,7 @@ PALPATE_INLINE void InterfaceProblem::forces(std::size_t k, std::vector<VertexFo
   std::vector<Vector3> sum(bodies_[k].base.size(), Vector3(0.0, 0.0, 0.0));
   for (const Row& r : rows_)
     for (const InterfaceTerm& t : r.row.terms)
-      if (at(t.body) == k && r.present > 0.0) sum[at(t.vertex)] += r.present * t.weight * direction(r.row, t.body);
+      if (at(t.body) == k && r.followed > 0.0) sum[at(t.vertex)] += r.followed * t.weight * direction(r.row, t.body);
   forces.clear();
   for (std::size_t v = 0; v < sum.size(); ++v)
     if (sum[v].squaredNorm() > 0.0) forces.push_back({static_cast<int>(v), ModelVector(sum[v])});
@@ -132,7 +132,7 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
   geometry_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     for (std::size_t l = k; l < bodies_.size(); ++l) {
-      if (k == l && !limits_.self_contact) continue;
+      if (k == l && !self_contact_) continue;
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
       geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length));
@@ -205,10 +205,10 @@ PALPATE_INLINE void InterfaceProblem::limit_rows(Status& status) {
       r.gap += t.weight * r.row.normal.dot(body.pose * body.base[at(t.vertex)]);
     }
   }
-  if (rows_.size() <= at(limits_.capacity)) return;
+  if (rows_.size() <= at(capacity_)) return;
   status.set(StatusFlag::degraded_model);
   std::ranges::sort(rows_, {}, [](const Row& r) { return r.force > 0.0 ? -infinity : r.gap; });
-  rows_.resize(at(limits_.capacity));
+  rows_.resize(at(capacity_));
   std::ranges::sort(rows_, {}, [](const Row& r) { return r.row.key; });
 }
 
@@ -243,18 +243,19 @@ PALPATE_INLINE bool InterfaceProblem::find_forces() {
           rows_[at(r)].gap - ComplementarityProblem::relaxation * problem_.w(r, r) * problem_.lambda[at(r)];
     solved = problem_.solve_again();
   }
-  for (int r = 0; r < problem_.rows(); ++r) rows_[at(r)].force = rows_[at(r)].present = problem_.lambda[at(r)];
+  for (int r = 0; r < problem_.rows(); ++r) rows_[at(r)].force = rows_[at(r)].followed = problem_.lambda[at(r)];
   return solved;
 }
 
 PALPATE_INLINE Status InterfaceProblem::solve() {
-  constexpr double flagged = 0.05;
+  constexpr int most_linearisations = 8;
+  constexpr double tolerance = 1e-3, flagged = 0.05;  // of the displacement between two of them
   Status status;
   double change = infinity;
   bool solved = true;
   if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
   move_bodies();
-  for (int i = 0; i < limits_.maximum_iterations && change > limits_.tolerance; ++i) {
+  for (int i = 0; i < most_linearisations && change > tolerance; ++i) {
     status = {};
     find_rows();
     limit_rows(status);
@@ -263,7 +264,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
     solved = find_forces();
     change = move_bodies();
     if (!keeps_shape()) {
-      for (Row& r : rows_) r.force = r.present = 0.0;
+      for (Row& r : rows_) r.force = r.followed = 0.0;
       solved = false;
       move_bodies();
     }
@@ -274,232 +275,6 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   if (is_coarse()) status.set(StatusFlag::coarse_contact);
   factor_pressing();
   return status;
-}
-
-PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(const Body& other,
-                                                                             const Vector3& p) const noexcept {
-  constexpr double across = 0.7;        // cosine from the normal of the nearest facet: not beside a rim
-  constexpr double close = 1e-3;        // of a mean facet: no direction is known
-  constexpr double of_thickness = 1.9;  // of a depth: beyond it the vertex is on the other side of the body
-  const double most = std::max(other.facet_length, 2.0 * other.deepest);
-  if (other.triangles.empty() || other.bvh.bounds().squared_distance(p) > most * most) return {};
-  const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
-  const auto weights = [&](int t) { return closest_point(p, corner(t, 0), corner(t, 1), corner(t, 2)).weights; };
-  const auto from = [&](int t, const std::array<double, 3>& w) {
-    return Vector3(p - (w[0] * corner(t, 0) + w[1] * corner(t, 1) + w[2] * corner(t, 2)));
-  };
-  NearestFacet found;
-  found.facet = other.bvh.nearest(p, [&](int t) { return from(t, weights(t)).squaredNorm(); });
-  if (found.facet < 0) return {};
-  found.weights = weights(found.facet);
-  const Vector3 path = from(found.facet, found.weights), first = corner(found.facet, 0);
-  found.normal = cross(corner(found.facet, 1) - first, corner(found.facet, 2) - first).normalized();
-  found.height = found.normal.dot(path);
-  const bool is_beside = std::abs(found.height) < across * path.norm() && path.norm() > close * other.facet_length;
-  if (is_beside || found.height < -of_thickness * other.depths[at(found.facet)]) return {};
-  return found;
-}
-
-/// The same only where the facet faces the vertex: one of another side is nearer where the vertex is deep in a thin
-/// body.
-PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_opposite(const Body& own, const Body& other,
-                                                                              int v) const noexcept {
-  constexpr double opposite = -0.2;  // cosine between the normals
-  const NearestFacet found = find_nearest(other, own.now[at(v)]);
-  if (found.facet < 0) return found;
-  Vector3 normal(0.0, 0.0, 0.0);
-  for (const int t : own.tissue.surface().triangles_at(v)) {
-    const Triangle& corners = own.triangles[at(t)];
-    const Vector3& first = own.now[at(corners[0])];
-    normal += cross(own.now[at(corners[1])] - first, own.now[at(corners[2])] - first);
-  }
-  return normal.dot(found.normal) < opposite * normal.norm() ? found : NearestFacet{};
-}
-
-/// A row of the last linearisation that pressed; null if it did not.
-PALPATE_INLINE const InterfaceProblem::Row* InterfaceProblem::pressed_row(const InterfaceKey& key) const noexcept {
-  const auto old = std::ranges::lower_bound(rows_, key, {}, [](const Row& r) { return r.row.key; });
-  return old != rows_.end() && old->row.key == key && old->force > 0.0 ? &*old : nullptr;
-}
-
-/// Of mean gaps, at the present positions.
-PALPATE_INLINE void InterfaceProblem::note_closed(std::span<const InterfaceRow> rows) {
-  for (Body& body : bodies_) body.closed.assign(body.now.size(), infinity);
-  for (const InterfaceRow& row : rows) {
-    double gap = 0.0;
-    for (const InterfaceTerm& t : row.terms) gap += t.weight * row.normal.dot(bodies_[at(t.body)].now[at(t.vertex)]);
-    if (gap >= 0.0 && pressed_row(row.key) == nullptr) continue;
-    for (const InterfaceTerm& t : row.terms) {
-      double& closed = bodies_[at(t.body)].closed[at(t.vertex)];
-      closed = std::min(closed, std::min(0.0, gap));
-    }
-  }
-}
-
-/// Whether a vertex or edge at this height above another surface needs no row of its own. Where a mean gap is closed,
-/// or will be, a fiftieth of a facet is allowed beyond it: rows for less would only cost time.
-PALPATE_INLINE bool InterfaceProblem::may_enter(const Body& body, int v, double height, double length) const noexcept {
-  constexpr double beside_closed = 0.02, elsewhere = 0.002;  // of a mean facet
-  const double closed = body.closed[at(v)];
-  return closed < infinity ? height - closed > -beside_closed * length : height > -elsewhere * length;
-}
-
-/// Rows of vertices that pressed, or that have entered.
-PALPATE_INLINE void InterfaceProblem::add_entered(std::size_t k, std::size_t l) {
-  constexpr double reach = 0.25;  // of a mean facet
-  const Body &own = bodies_[k], &other = bodies_[l];
-  for (int v = 0; v < static_cast<int>(own.now.size()); ++v) {
-    const NearestFacet b = find_opposite(own, other, v);
-    if (b.facet < 0 || b.height > reach * other.facet_length) continue;
-    const InterfaceKey key{static_cast<int>(k), static_cast<int>(l), v, true};
-    if (pressed_row(key) == nullptr && may_enter(own, v, b.height, other.facet_length)) continue;
-    const Triangle& corners = other.triangles[at(b.facet)];
-    geometry_.rows().push_back({key,
-                                -b.normal,
-                                0.0,
-                                {{key.body, v, -1.0},
-                                 {key.other, corners[0], b.weights[0]},
-                                 {key.other, corners[1], b.weights[1]},
-                                 {key.other, corners[2], b.weights[2]}}});
-  }
-}
-
-/// The way out is along the mean of the normals where it enters and leaves.
-PALPATE_INLINE InterfaceProblem::Crossing InterfaceProblem::find_crossing(const Body& other, const Vector3& from,
-                                                                          const Vector3& to) const noexcept {
-  const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
-  const auto normal = [&](int t) {
-    return Vector3(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)).normalized());
-  };
-  const Vector3 path = to - from;
-  double enters = infinity, leaves = -infinity;
-  int first = -1, last = -1;
-  other.bvh.visit_along(from, path, 0.0, [&](int t) {
-    const Vector3 e1 = corner(t, 1) - corner(t, 0), e2 = corner(t, 2) - corner(t, 0), n = cross(e1, e2);
-    const double along = n.dot(path);
-    if (along == 0.0) return 1.0;
-    const double part = n.dot(corner(t, 0) - from) / along;
-    const Vector3 hit = from + part * path - corner(t, 0);
-    const double u = cross(hit, e2).dot(n) / n.squaredNorm(), v = cross(e1, hit).dot(n) / n.squaredNorm();
-    if (!(part >= 0.0 && part <= 1.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0)) return 1.0;
-    if (along < 0.0 && part < enters) {
-      enters = part;
-      first = t;
-    }
-    if (along > 0.0 && part > leaves) {
-      leaves = part;
-      last = t;
-    }
-    return 1.0;
-  });
-  if (first < 0 || last < 0 || !(enters < leaves)) return {};
-  const Vector3 middle = from + 0.5 * (enters + leaves) * path, out = (normal(first) + normal(last)).normalized();
-  Crossing found{0.5 * (enters + leaves), infinity};
-  for (const int t : {first, last}) {
-    const double depth = normal(t).dot(corner(t, 0) - middle) / normal(t).dot(out);
-    if (!(depth < found.depth)) continue;
-    found.depth = depth;
-    found.facet = t;
-    found.out = out;
-  }
-  if (found.facet < 0) return {};
-  found.weights =
-      closest_point(middle + found.depth * out, corner(found.facet, 0), corner(found.facet, 1), corner(found.facet, 2))
-          .weights;
-  return found.depth < 1.9 * other.depths[at(found.facet)] ? found : Crossing{};
-}
-
-template <class Visit>
-void InterfaceProblem::visit_crossings(const Body& own, const Body& other, Visit&& visit) const {
-  if (other.triangles.empty()) return;
-  const Box& bounds = other.bvh.bounds();
-  for (const auto& [a, b] : own.edges) {
-    if (own.closed[at(a)] < infinity && own.closed[at(b)] < infinity) continue;
-    const Vector3 path = own.now[at(b)] - own.now[at(a)];
-    if (!bounds.is_crossed(own.now[at(a)], path, 0.0, 1.0)) continue;
-    const Crossing c = find_crossing(other, own.now[at(a)], own.now[at(b)]);
-    if (c.facet >= 0) visit(a, b, c);
-  }
-}
-
-/// Whether the points of a row of an edge are still opposite each other, so that it keeps them while they touch.
-PALPATE_INLINE bool InterfaceProblem::is_opposite(const InterfaceRow& row, double length) const noexcept {
-  constexpr double beside = 0.1, apart = 0.25;  // of a mean facet
-  Vector3 between(0.0, 0.0, 0.0);
-  for (const InterfaceTerm& t : row.terms) between += t.weight * bodies_[at(t.body)].now[at(t.vertex)];
-  const double gap = row.normal.dot(between);
-  return gap < apart * length && (between - gap * row.normal).norm() < beside * length;
-}
-
-/// Rows of edges that go through the other body although no vertex has entered, and of those that pressed.
-PALPATE_INLINE void InterfaceProblem::add_crossings(std::size_t k, std::size_t l) {
-  const int own = static_cast<int>(k), other = static_cast<int>(l);
-  const double length = bodies_[l].facet_length;
-  const std::size_t first = geometry_.rows().size();
-  visit_crossings(bodies_[k], bodies_[l], [&](int a, int b, const Crossing& c) {
-    const InterfaceKey key{own, other, a, true, b};
-    if (pressed_row(key) == nullptr &&
-        (may_enter(bodies_[k], a, -c.depth, length) || may_enter(bodies_[k], b, -c.depth, length)))
-      return;
-    const Triangle& corners = bodies_[l].triangles[at(c.facet)];
-    geometry_.rows().push_back({key,
-                                -c.out,
-                                0.0,
-                                {{own, a, c.along - 1.0},
-                                 {own, b, -c.along},
-                                 {other, corners[0], c.weights[0]},
-                                 {other, corners[1], c.weights[1]},
-                                 {other, corners[2], c.weights[2]}}});
-  });
-  const std::size_t crossing = geometry_.rows().size();
-  for (const Row& r : rows_) {
-    const InterfaceKey& key = r.row.key;
-    if (key.body != own || key.other != other || key.end < 0 || !(r.force > 0.0) || !is_opposite(r.row, length))
-      continue;
-    const auto begin = geometry_.rows().begin() + static_cast<std::ptrdiff_t>(first),
-               end = geometry_.rows().begin() + static_cast<std::ptrdiff_t>(crossing);
-    if (std::none_of(begin, end, [&](const InterfaceRow& row) { return row.key == key; }))
-      geometry_.rows().push_back(r.row);
-  }
-}
-
-PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
-  constexpr double beside_closed = 0.03, elsewhere = 0.01;  // allowed, of a mean facet
-  bool found = false;
-  for (const Body& own : bodies_)
-    for (const Body& other : bodies_) {
-      if (&own == &other || found) continue;
-      const auto allowed = [&](std::size_t v) {
-        return (own.closed[v] < infinity ? beside_closed : elsewhere) * other.facet_length;
-      };
-      for (std::size_t v = 0; v < own.now.size() && !found; ++v)
-        found = find_nearest(other, own.now[v]).height < -allowed(v);
-      if (!found)
-        visit_crossings(own, other, [&](int a, int b, const Crossing& c) {
-          found = found || c.depth > std::max(allowed(at(a)), allowed(at(b)));
-        });
-    }
-  return found;
-}
-
-/// Whether tissues overlap, before they move each other, by a tenth of the thickness of the thinner one.
-PALPATE_INLINE bool InterfaceProblem::overlap_at_rest() {
-  constexpr double large = 0.2;  // of a depth, half of the thickness
-  for (Body& body : bodies_) {
-    for (std::size_t v = 0; v < body.now.size(); ++v)
-      body.now[v] = body.pose * body.tissue.surface().position(static_cast<int>(v));
-    body.bvh.refit(body.triangles, body.now);
-  }
-  for (const Body& own : bodies_)
-    for (const Body& other : bodies_)
-      for (int v = 0; &own != &other && v < static_cast<int>(own.now.size()); ++v) {
-        const NearestFacet b = find_opposite(own, other, v);
-        if (b.facet < 0) continue;
-        double depth = other.depths[at(b.facet)];
-        for (const int t : own.tissue.surface().triangles_at(v)) depth = std::min(depth, own.depths[at(t)]);
-        if (-b.height > large * depth) return true;
-      }
-  return false;
 }
 
 /// Whether two surfaces that press each other do so with a few rows only.
@@ -555,7 +330,7 @@ PALPATE_INLINE void InterfaceProblem::follow(const VectorX& pushed) {
     answer_[r] = l[r] > 0.0 ? answer_[r] / l[r] : 0.0;
     for (std::size_t s = 0; s < r; ++s) answer_[s] -= l[s] * answer_[r];
     Row& row = rows_[pressing_[r]];
-    row.present = std::max(0.0, row.force - answer_[r]);
+    row.followed = std::max(0.0, row.force - answer_[r]);
   }
 }
 

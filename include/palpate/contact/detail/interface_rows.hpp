@@ -27,12 +27,14 @@ struct InterfaceTerm {
   double weight = 0.0;
 };
 
-/// Which surfaces a row is between, and at which vertex of the first one; or, with `end`, at an edge. A row of a vertex
-/// alone, or of an edge, keeps these out of the other surface.
+/// What a row keeps out of the other surface: in the mean what is around a vertex, that vertex alone, or an edge.
+enum class InterfacePart { mean, vertex, edge };
+
+/// Which surfaces a row is between, and at which vertex or edge of the first one.
 struct InterfaceKey {
   int body = 0, other = 0, vertex = 0;
-  bool alone = false;
-  int end = -1;
+  InterfacePart part = InterfacePart::mean;
+  int end = -1;  ///< the other vertex of an edge
   friend bool operator==(const InterfaceKey&, const InterfaceKey&) = default;
   friend auto operator<=>(const InterfaceKey&, const InterfaceKey&) = default;
 };

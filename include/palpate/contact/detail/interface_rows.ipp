@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/interface_rows.hpp>
+#include <palpate/contact/detail/line_crossing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -240,6 +241,7 @@ PALPATE_INLINE std::vector<double> interface_depths(std::span<const Triangle> tr
                                                     std::span<const Triangle> boundary,
                                                     std::span<const Vector3> of_boundary, const Bvh& bvh) {
   const Vector3 size = triangles.empty() ? Vector3(0.0, 0.0, 0.0) : bvh.bounds().size();
+  constexpr double least = 1e-6;  // of a facet: the facet itself
   std::vector<double> depths;
   depths.reserve(triangles.size());
   for (const Triangle& t : triangles) {
@@ -251,16 +253,10 @@ PALPATE_INLINE std::vector<double> interface_depths(std::span<const Triangle> tr
     const Vector3 path = across.normalized() * -size.norm();
     bvh.visit_along(centre, path, 0.0, [&](int other) {
       const Triangle& o = boundary[static_cast<std::size_t>(other)];
-      const Vector3 &p = of_boundary[static_cast<std::size_t>(o[0])],
-                    e1 = of_boundary[static_cast<std::size_t>(o[1])] - p,
-                    e2 = of_boundary[static_cast<std::size_t>(o[2])] - p;
-      const Vector3 n = cross(e1, e2);
-      const double along = n.dot(path);
-      if (!(along > 0.0)) return part;  // leaves the body there
-      const double at = n.dot(p - centre) / along;
-      const Vector3 hit = centre + at * path - p;
-      const double u = cross(hit, e2).dot(n) / n.squaredNorm(), v = cross(e1, hit).dot(n) / n.squaredNorm();
-      if (at * size.norm() > 1e-6 * length && u >= 0.0 && v >= 0.0 && u + v <= 1.0) part = std::min(part, at);
+      const auto at = [&](std::size_t k) { return of_boundary[static_cast<std::size_t>(o[k])]; };
+      const auto crossing = cross_triangle(centre, path, at(0), at(1), at(2));
+      if (crossing && crossing->is_along_normal && crossing->part * size.norm() > least * length)
+        part = std::min(part, crossing->part);
       return part;
     });
     depths.push_back(0.5 * part * size.norm());

@@ -1,6 +1,7 @@
 // How thick a body is where it is pressed, and a mesh that is fine enough for its bending.
 #pragma once
 
+#include <palpate/contact/detail/line_crossing.hpp>
 #include <palpate/element/tet4.hpp>
 #include <palpate/mesh/mesh.hpp>
 #include <palpate/mesh/refine_near.hpp>
@@ -26,16 +27,10 @@ struct LineExit {
 /// The exit through a triangle with outward normal (b - a) x (c - a); nothing if the line does not leave there.
 inline std::optional<LineExit> exit_through(const SurfacePoint& at, const Vector3& a, const Vector3& b,
                                             const Vector3& c) {
-  constexpr double rounding = 1e-9;  // of barycentric coordinates: a ray through an edge must not slip through
-  const Vector3 ab = b - a, ac = c - a, normal = ab.cross(ac);
-  const double leaving = -at.outward.dot(normal);
-  if (!(leaving > 0.0)) return std::nullopt;
-  const double distance = (a - at.position).dot(normal) / leaving;
-  const Vector3 from_a = at.position - distance * at.outward - a;
-  const double s = from_a.cross(ac).dot(normal) / normal.squaredNorm(),
-               t = ab.cross(from_a).dot(normal) / normal.squaredNorm();
-  if (!(distance > 0.0 && s >= -rounding && t >= -rounding && s + t <= 1.0 + rounding)) return std::nullopt;
-  return LineExit{distance, {1.0 - s - t, s, t}};
+  const auto crossing = cross_triangle(at.position, -at.outward, a, b, c);
+  if (!crossing || !crossing->is_along_normal || !(crossing->part > 0.0)) return std::nullopt;
+  const auto& [first, second, third] = crossing->weights;
+  return LineExit{crossing->part, {first, second, third}};
 }
 
 /// Distance from a point of the surface to the opposite side, along the direction in which it is pressed [m]; infinite
