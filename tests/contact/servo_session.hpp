@@ -9,6 +9,8 @@
 #include <palpate/mesh/generators.hpp>
 #include <palpate/model/haptic_fe_model.hpp>
 
+#include <cmath>
+
 namespace test {
 
 using Pad = HapticFEModel<Tet4, LinearElastic, Condensed<SelectiveInverse>>;
@@ -79,6 +81,26 @@ struct ServoSession {
     tick(Vector3(x, y, pad_height + sphere_radius + 1e-3));
     return move(Vector3(x, y, pad_height + sphere_radius - depth), 100);
   }
+};
+
+/// Work of the force on a tool along its path.
+struct PathWork {
+  double gained = 0.0, exchanged = 0.0;  ///< sum of the work of all ticks, and of its magnitudes [J]
+
+  void add(const Vector3& position, const Vector3& force) {
+    if (started_) {
+      const double work = 0.5 * (force_ + force).dot(position - position_);
+      gained += work;
+      exchanged += std::abs(work);
+    }
+    position_ = position;
+    force_ = force;
+    started_ = true;
+  }
+
+ private:
+  Vector3 position_ = Vector3::Zero(), force_ = Vector3::Zero();
+  bool started_ = false;
 };
 
 /// Whether two vectors are bitwise equal.

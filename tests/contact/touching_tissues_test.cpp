@@ -344,24 +344,57 @@ TEST_CASE("a tool moved on a closed path at touching tissues does not gain energ
   HapticServo servo(tissues.group(), SphereTool{4e-3}, open_options());
   Beside beside{tissues};
   ToolState s;
-  Vector3 before, force = Vector3::Zero();
-  double gained = 0.0, exchanged = 0.0;
+  test::PathWork work;
   for (int i = 0; i < 2000; ++i) {
     const double a = 2.0 * 3.14159265358979 * i / 500.0;
     s.position = Vector3(0.5 * side + 2e-3 * std::sin(a), 0.5 * side, 9e-3 - 1.2e-3 + 0.8e-3 * std::cos(a));
     s.time += 1e-3;
-    const Vector3 now = servo.tick(s).force();
+    const Vector3 force = servo.tick(s).force();
     beside(i);
-    if (i > 500) {
-      const double work = 0.5 * (force + now).dot(s.position - before);
-      gained += work;
-      exchanged += std::abs(work);
-    }
-    force = now;
-    before = s.position;
+    if (i >= 500) work.add(s.position, force);
   }
-  CHECK(exchanged > 1e-6);
-  CHECK(gained <= 0.01 * exchanged);
+  CHECK(work.exchanged > 1e-6);
+  CHECK(work.gained <= 0.01 * work.exchanged);
+}
+
+TEST_CASE("every tool feels a tissue as alone while the others are far away, and stiffer on another one",
+          "[contact][touching][tools]") {
+  std::vector<Vector3> corners;
+  for (const double x : {-3e-3, 3e-3})
+    for (const double y : {-3e-3, 3e-3})
+      for (const double z : {-2e-3, 0.0}) corners.emplace_back(x, y, z + 1e-3);
+  const ConvexTool plate(corners, 1e-3);
+  const CapsuleTool bar(2e-3, 4e-3, Vector3::UnitX());
+  const bool grasps = GENERATE(false, true);
+  const double friction = GENERATE(0.0, 0.4);
+  for (const ToolList& tool : {ToolList(plate), ToolList(bar)}) {
+    ServoOptions options = open_options();
+    options.contact.friction = friction;
+    options.grasp_buttons = 1;
+    options.rotational_stiffness = 1.0;
+    options.force_limits->peak_torque = 10.0;
+    const auto force = [&](const TissueGroup& group, auto between) {
+      HapticServo servo(group, tool, options);
+      ToolState state;
+      Vector3 f;
+      for (int t = 0; t < 300; ++t) {
+        state.time += 1e-3;
+        state.buttons = grasps && t > 220 ? 1u : 0u;
+        state.position = {0.5 * side, 0.5 * side, 7.5e-3 - std::min(1.0, t / 200.0) * 1.5e-3};
+        f = servo.tick(state).force();
+        between(t);
+      }
+      return f;
+    };
+    Stack alone(6, 1), apart(6, 1), together(6, 1);
+    const Vector3 expected = force(TissueGroup(alone.above), [](int) {});
+    apart.below.set_pose(lowered(0.1));
+    TouchingTissues far_away(apart.below, apart.above), touching(together.below, together.above);
+    CHECK(expected[2] > 1e-3);
+    CHECK((force(TissueGroup(far_away.tissue(1)), Beside{far_away}) - expected).norm() <
+          (friction > 0.0 ? 1e-3 : 1e-12) * expected.norm());
+    CHECK(force(touching.group(), Beside{touching})[2] > 1.2 * expected[2]);
+  }
 }
 
 TEST_CASE("a ring that is pressed flat does not enter itself", "[contact][touching][self]") {

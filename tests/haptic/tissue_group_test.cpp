@@ -482,25 +482,17 @@ TEST_CASE("work on a tool that goes round between two tissues is not positive", 
   above.set_pose(facing(gap));
   const double friction = GENERATE(0.0, 0.4);
   HapticServo servo(TissueGroup(below, above), SphereTool{radius}, open_options(1000.0, friction));
-  double gained = 0.0, exchanged = 0.0;
-  Vector3 before = Vector3::Zero(), force = Vector3::Zero();
+  test::PathWork work;
   for (int i = 0; i < 1600; ++i) {
     ToolState s;
     s.time = s.now = 1e-3 * i;
     const double a = 2.0 * std::numbers::pi * i / 400.0, size = std::min(1.0, i / 200.0);
     s.position = Vector3(0.5 * side + 1e-3 * size * std::sin(a), 0.5 * side, 0.5 * gap + 0.5e-3 * size * std::cos(a));
     servo.tick(s);
-    const Vector3 now = servo.tick_view().contact_force();
-    if (i > 400) {  // three times round
-      const double work = 0.5 * (force + now).dot(s.position - before);
-      gained += work;
-      exchanged += std::abs(work);
-    }
-    force = now;
-    before = s.position;
+    if (i >= 400) work.add(s.position, servo.tick_view().contact_force());  // three times round
   }
-  CHECK(exchanged > 1e-6);
-  CHECK(gained <= 0.005 * exchanged);
+  CHECK(work.exchanged > 1e-6);
+  CHECK(work.gained <= 0.005 * work.exchanged);
 }
 
 TEST_CASE("a tick with several tissues does not allocate", "[haptic][group]") {
