@@ -33,8 +33,7 @@ PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(con
   return found;
 }
 
-/// The same only where the facet faces the vertex: one of another side is nearer where the vertex is deep in a thin
-/// body.
+/// The same only where the facet faces the vertex: deep in a thin body the nearest facet may belong to the far side.
 PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_opposite(const Body& own, const Body& other,
                                                                               int v) const noexcept {
   constexpr double opposite = -0.2;  // cosine between the normals
@@ -55,7 +54,7 @@ PALPATE_INLINE const InterfaceProblem::Row* InterfaceProblem::pressed_row(const 
   return old != rows_.end() && old->row.key == key && old->force > 0.0 ? &*old : nullptr;
 }
 
-/// Of mean gaps, at the present positions.
+/// Sets the mean gaps at every vertex that are closed at the present positions, or pressed before.
 PALPATE_INLINE void InterfaceProblem::note_closed(std::span<const InterfaceRow> rows) {
   for (Body& body : bodies_) body.closed_gap.assign(body.now.size(), infinity);
   for (const InterfaceRow& row : rows) {
@@ -97,7 +96,7 @@ PALPATE_INLINE void InterfaceProblem::add_entered(std::size_t k, std::size_t l) 
   }
 }
 
-/// The way out is along the mean of the normals where it enters and leaves.
+/// An edge leaves the body along the mean of the normals of the facets that it goes through.
 PALPATE_INLINE InterfaceProblem::Crossing InterfaceProblem::find_crossing(const Body& other, const Vector3& from,
                                                                           const Vector3& to) const noexcept {
   const auto corner = [&](int t, std::size_t k) { return other.now[at(other.triangles[at(t)][k])]; };
