@@ -6,17 +6,17 @@
 // beside them and lifts it, and a blade cuts it off at its base. All instruments touch all organs: one servo, one force
 // per instrument.
 //
-//   1. TouchingTissues finds the contact between liver and stomach; its group has both as instruments feel them.
+//   1. TouchingTissues finds the contact between the organs, and does their background work: steps of the liver, cuts
+//      of the gallbladder.
 //   2. A TissueGroup is what a servo or session takes in place of a tissue. Its tissues may have any types; each keeps
-//      its pose, its friction and its background work.
+//      its pose and its friction.
 //   3. Jaws are two tools on a joint for one device. Friction holds the tissue; `joint_torque` is what presses the jaws
 //      apart. Friction changes while the servo ticks.
 //   4. A blade cuts the tissues that can be cut; `detached_pieces` has what came off, for a physics engine.
 //
 // Here instruments follow a script and background work is done between ticks, so that every run is the same; in your
-// program they are devices of a HapticSession, with a BackgroundWorker for `touching` and one for the gallbladder. The
-// exit code is 1 when an instrument had no force, the stomach bore nothing, the grip did not lift, or nothing was cut
-// off.
+// program they are devices of a HapticSession, with a BackgroundWorker for `touching`. The exit code is 1 when an
+// instrument had no force, the stomach bore nothing, the grip did not lift, or nothing was cut off.
 #include <palpate/cut.hpp>
 #include <palpate/organs.hpp>
 #include <palpate/palpate.hpp>
@@ -79,12 +79,12 @@ int main() {
   Stomach stomach(box_tet4(stomach_size, {7, 5, 2}), Scene().fix("z0").touch("z1"),
                   LinearElastic{.youngs_modulus = 3e3, .poisson_ratio = 0.45, .density = density});
   stomach.set_pose(Eigen::Isometry3d(Eigen::Translation3d(-5e-3, -5e-3, -stomach_size[2])));
-  TouchingTissues touching(liver, stomach);
   Gallbladder gallbladder(box_tet4(gallbladder_size, {20, 6, 4}), Scene().fix("x0").touch("surface"),
                           LinearElastic{.youngs_modulus = 10e3, .poisson_ratio = 0.4, .density = density});
   gallbladder.set_pose(Eigen::Isometry3d(Eigen::Translation3d(beside)));
-  TissueGroup organs = touching.group();
-  organs.add(gallbladder, 0.2);  // friction of its own
+  TouchingTissues touching(liver, stomach, gallbladder);
+  TissueGroup organs(touching.tissue(0), touching.tissue(1));
+  organs.add(touching.tissue(2), 0.2);  // friction of its own
 
   Handle handle;
   double opening = 0.7;  // a ButtonOpening, or the axis of a gripper, in your program
@@ -112,8 +112,7 @@ int main() {
     const auto forces = servo.tick(states);
     jaws.first().write(forces[1]);
     jaws.second().write(forces[2]);
-    if (time >= next_work) next_work += touching.background_work().next;
-    if (tick % 16 == 15) gallbladder.process_cuts();
+    while (time >= next_work) next_work += touching.background_work().next;
     most_on_probe = std::max(most_on_probe, forces[0].force().norm());
     most_on_blade = std::max(most_on_blade, forces[3].force().norm());
     if (tick == 590) grip = jaws.joint_torque();

@@ -73,6 +73,8 @@ class TissueAdaptor {
   { return tissue().notes(); }
   bool refuses_suspicious_units() const noexcept requires requires(const Tissue& t) { t.refuses_suspicious_units(); }
   { return tissue().refuses_suspicious_units(); }
+  bool can_be_cut() const noexcept requires requires(const Tissue& t) { t.can_be_cut(); }
+  { return tissue().can_be_cut(); }
 
  protected:
   Tissue& tissue() noexcept { return *tissue_; }

@@ -207,8 +207,9 @@ constexpr void explain_tissue() noexcept {
 /// - `report_failed(failed)` -> void: reports whether a BackgroundWorker has stopped because `background_work` threw;
 /// `begin_tick` then reports stalled_tissue.
 /// A tissue may also have `claim()`, if only one servo at a time can use it (TissueClaim), `notes() const`, sentences
-/// for the report of a session as std::vector<std::string>, and `refuses_suspicious_units() const`: whether tools that
-/// look as if they were given in millimetres are refused.
+/// for the report of a session as std::vector<std::string>, `refuses_suspicious_units() const`: whether tools that look
+/// as if they were given in millimetres are refused, and `can_be_cut() const noexcept`, where only some objects of the
+/// type with `try_cut` can.
 /// All hooks but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two
 /// calls of `begin_tick` the surface stays at the same place in memory.
 template <class T>

@@ -39,6 +39,7 @@ struct TissueFunctions {
   TissueClaim* (*claim)(void*) noexcept = nullptr;
   std::vector<std::string> (*notes)(const void*) = nullptr;
   bool (*refuses_units)(const void*) noexcept = nullptr;
+  bool (*can_be_cut)(const void*) noexcept = nullptr;  ///< null: wherever there is try_cut
   /// With try_cut only: code of blades is compiled for a tissue that can be cut.
   std::unique_ptr<ServoBlade> (*make_blade)(const BladeTool&, double stiffness) = nullptr;
 };
@@ -138,6 +139,8 @@ struct TissueCalls {
       f.try_cut = [](void* t, const BladeSweep& s) noexcept -> bool { return of(t).try_cut(s); };
       f.make_blade = &make_blade;
     }
+    if constexpr (requires(const T& t) { t.can_be_cut(); })
+      f.can_be_cut = [](const void* t) noexcept -> bool { return of(t).can_be_cut(); };
     if constexpr (calls<decltype(hooked().half_space_map(0))>)
       f.half_space_map = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).half_space_map(v); };
     if constexpr (requires(T & t) { t.claim(); })
@@ -242,7 +245,9 @@ class TissueView {
   /// Whether the materials of the surface belong to the compliance: false for a tissue that changes the compliance of
   /// the one that has the surface.
   bool has_contact_materials() const noexcept { return functions_->has_contact_materials; }
-  bool can_be_cut() const noexcept { return functions_->try_cut != nullptr; }
+  bool can_be_cut() const noexcept {
+    return functions_->try_cut != nullptr && (functions_->can_be_cut == nullptr || functions_->can_be_cut(tissue_));
+  }
   /// Requests a cut along the surface swept by a blade, world frame; false when the tissue cannot be cut, or not now.
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }
   /// A blade for this tissue, with a coupling of that stiffness [N/m]; null when the tissue cannot be cut. Throws

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/concepts/tissue_claim.hpp>
+#include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/detail/interface_problem.hpp>
 #include <palpate/contact/detail/near_compliance.hpp>
 #include <palpate/contact/detail/requested_vertices.hpp>
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +31,8 @@ class TouchingTissues;
 
 /// A tissue as tools feel it: moved by the tissues that it touches, with a compliance that includes them. Satisfies
 /// TissueModel; for one servo at a time. Part of TouchingTissues. Ticks read blocks of the compliance that are ready
-/// near the tools; another block costs 9 multiplications per gap that presses.
+/// near the tools; another block costs 9 multiplications per gap that presses. A blade cuts it if it cuts the tissue:
+/// ticks report degraded_model until they feel the cut.
 class TouchingTissue {
  public:
   TouchingTissue(const TouchingTissue&) = delete;
@@ -49,9 +52,11 @@ class TouchingTissue {
   Status begin_tick() noexcept;
   void end_tick(std::span<const VertexForce> forces, std::span<const PointForce> points = {}) noexcept;
   std::uint64_t updates() const noexcept { return updates_.load(std::memory_order_relaxed); }
-  NoHook exchange_contacts(ContactProblem&) noexcept { return {}; }
+  void exchange_contacts(ContactProblem& problem) noexcept;
+  /// Waits for a step or solution in progress.
   void prepare_tools(const ToolRadii& radii, const ContactParameters& parameters);
-  NoHook try_cut(const BladeSweep&) noexcept { return {}; }
+  bool try_cut(const BladeSweep& sweep) noexcept { return tissue_.view().try_cut(sweep); }
+  bool can_be_cut() const noexcept { return tissue_.view().can_be_cut(); }
   Matrix3 half_space_map(int v) const noexcept { return tissue_.view().half_space_map(v); }
   NoHook background_work() noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
@@ -68,6 +73,9 @@ class TouchingTissue {
     int rows = 0;
     detail::NearCompliance near_compliance{};
     Status status{};
+    std::uint64_t number = 0;                               // of the surface: changes of its triangles
+    detail::RequestedVertices near_room{}, pressed_room{};  // of a tick on a surface with other triangles
+    std::shared_ptr<ContactProblem> contact{};              // for a session to continue with
   };
   struct Forces {
     std::vector<VertexForce> item;
@@ -78,13 +86,15 @@ class TouchingTissue {
   /// Of vertices whose compliance is ready for a tick; that of others is evaluated there.
   static constexpr std::size_t most_near = 512, most_pressed = 192;
 
-  TouchingTissue(const detail::InterfaceTissue& tissue, int capacity);
+  TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& all, int capacity);
 
   using Block = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>>;
   static Block restraint(const View& view, int v) noexcept {
     return {view.restraint.data() + 3 * static_cast<std::ptrdiff_t>(view.rows) * v, view.rows, 3};
   }
   void take_view() noexcept;
+  /// Of a surface with other triangles. Allocates.
+  void renew(View& view, std::uint64_t number);
   static Matrix3 restrained(const View& view, int i, int j, const Matrix3& c) noexcept;
   /// For the thread that solves: the surface as tools do not press it, with the rows closed as they are. With the
   /// forces of the last tick, its compliance gives the surface that was found.
@@ -92,6 +102,7 @@ class TouchingTissue {
   /// Sum of Z f over forces.
   static VectorX pushed_by(const View& view, std::span<const VertexForce> forces);
 
+  TouchingTissues& all_;
   detail::InterfaceTissue tissue_;
   detail::ClaimedTissue claimed_;
   double largest_bound_ = 0.0;
@@ -105,17 +116,19 @@ class TouchingTissue {
   const View* newest_ = nullptr;  // published last; stays unchanged until the next one is published
   VectorX pushed_;                // at that time: sum of Z f
   std::vector<double> moved_;
-  Status of_tissue_;  // of the last begin_tick of a tissue that moves
+  Status of_tissue_;                          // of the last begin_tick of a tissue that changes
+  std::uint64_t number_ = 0, exchanged_ = 0;  // of the surface that a tick has, and the session's contact problem
   std::uint64_t revision_ = 0, published_ = 0;
   std::atomic<std::uint64_t> updates_{0};
   std::atomic<bool> slow_{false}, failed_{false};
+  std::atomic<bool> is_behind_{false};  // a cut is made, and ticks do not have it
   Status ticked_;
   TissueClaim claim_;
 };
 
 /// Contact between deformable tissues, solved in a background thread; ticks feel each tissue with its neighbours behind
-/// it. For static tissues whose compliance columns are all stored, and for tissues that move and are not cut, whose
-/// steps this object makes.
+/// it. For static tissues whose compliance columns are all stored, and for tissues that move or are cut, whose steps
+/// and cuts this object makes. Pieces that are cut off touch nothing.
 ///
 /// Gaps are those of mortar elements on the deformed surfaces, which pass a uniform pressure exactly between any
 /// meshes. The forces between two tissues are in equilibrium to rounding. In every solution the forces of the tools in
@@ -126,17 +139,17 @@ class TouchingTissue {
 /// enter another tissue where no mean gap keeps them out have rows of their own. Contacts of few facets, and edge
 /// against edge, are coarse: docs/simulator.md.
 ///
-/// A session takes `group()`, a BackgroundWorker takes this object; the tissues need no worker of their own. Refers to
+/// A session takes `group()`, a BackgroundWorker takes this object; the tissues have no worker of their own. Refers to
 /// the tissues, which must outlive it; a tissue belongs to one such object, and sessions use it through this one only.
-/// Poses and loads of static tissues must not change while a tick or a solution runs; after `reset` of a moving one,
-/// also not beside them, call that of this object. The forces of the last tick stay until the next one: call
-/// `HapticServo::release` at the end.
+/// Poses and loads of tissues that do not move must not change while a tick or a solution runs; after `reset` of one
+/// that moves or is cut, also not beside them, call that of this object. The forces of the last tick stay until the
+/// next one: call `HapticServo::release` at the end.
 class TouchingTissues {
  public:
   /// Of at least two tissues, or one with self contact. Solves up to ten times; allocates. Throws unsupported for a
-  /// tissue that is cut or stiffens, and for a static one whose columns are not all stored; bad_argument for a tissue
-  /// without touchable surface and for options that make no sense; TissueClaim's error for a moving tissue that a servo
-  /// uses.
+  /// tissue that stiffens, and for a static one whose columns are not all stored; bad_argument for a tissue without
+  /// touchable surface and for options that make no sense; TissueClaim's error for a tissue that moves or is cut and
+  /// that a servo uses.
   template <class... T>
   requires(sizeof...(T) > 1 && (TissueModel<T> && ...)) explicit TouchingTissues(T&... tissues)
       : TouchingTissues(TissueContactOptions{}, tissues...) {}
@@ -151,9 +164,9 @@ class TouchingTissues {
   /// One of them, for example for a group with friction of its own. Throws index_out_of_range.
   TouchingTissue& tissue(std::size_t k);
 
-  /// The next step of a tissue that moves, or solution of the contact; for BackgroundWorker. From one thread.
+  /// The next step of a tissue that moves, cut, or solution of the contact; for BackgroundWorker.
   BackgroundStep background_work();
-  /// Finds the contact forces for the forces of tools in the last tick, without a step. From the same thread.
+  /// Finds the contact forces for the forces of tools in the last tick, without a step or cut.
   /// Allocates; per linearisation, of which there are up to eight, O(gaps^3 + changed gaps x vertices), and O(pressing
   /// gaps^2 x vertices) for the ticks.
   void solve();
@@ -166,7 +179,7 @@ class TouchingTissues {
   /// drawn with these and those of the tools. Valid until the next call for that tissue.
   std::span<const VertexForce> contact_forces(std::size_t k);
 
-  /// Of the last solution; for the thread that solves.
+  /// Of the last solution; for the thread that does the background work.
   struct Report {
     int rows = 0, pressing = 0;  ///< gaps that are open or closed, and those that press
     double force = 0.0;          ///< sum of the magnitudes of all forces, in any direction [N]
@@ -175,15 +188,19 @@ class TouchingTissues {
   Report report() const noexcept { return report_; }
 
  private:
+  friend class TouchingTissue;
   void take_forces();
-  void step(std::size_t k);
+  bool work(std::size_t k);
+  void follow_ticks(std::size_t k);
+  void find_forces();
   TouchingTissues(std::vector<detail::InterfaceTissue> tissues, const TissueContactOptions& options);
 
   TissueContactOptions options_;
+  std::mutex changes_;  // of what follows
   std::vector<std::unique_ptr<TouchingTissue>> tissues_;
   std::unique_ptr<detail::InterfaceProblem> problem_;
   double time_ = 0.0, next_solution_ = 0.0;  // of what was done [s]
-  std::vector<double> next_step_;            // of the tissues; infinite for one that does not move
+  std::vector<double> next_work_;            // of the tissues; infinite for one without
   std::vector<VertexForce> forces_;
   Report report_;
 };

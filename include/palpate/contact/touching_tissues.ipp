@@ -15,21 +15,34 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<TouchingTissue>);
 
-PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue, int capacity)
-    : tissue_(tissue), claimed_(tissue_.view().claim()) {
+PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& all_tissues,
+                                              int capacity)
+    : all_(all_tissues), tissue_(tissue), claimed_(tissue_.view().claim()) {
   std::vector<int> all(static_cast<std::size_t>(tissue_.surface().vertex_count()));
   std::iota(all.begin(), all.end(), 0);
   if (!tissue_.can_touch_others())
-    raise(SetupErrorKind::unsupported, "contact with other tissues for one that is cut or stiffens",
-          "Use Condensed<...> or Implicit<...> for a tissue that touches others");
+    raise(SetupErrorKind::unsupported, "contact with other tissues for one that stiffens",
+          "Use Condensed<...>, Implicit<...> or Cuttable<...> of these for a tissue that touches others");
   if (tissue_.surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
-  if (!tissue_.moves() && !tissue_.view().require_columns(all).ok())
+  if (!tissue_.changes() && !tissue_.view().require_columns(all).ok())
     raise(SetupErrorKind::unsupported, "contact with other tissues for one whose compliance columns are not all stored",
           "Use Condensed<...>, or ColumnFill::synchronous with compliance_slots for every touchable vertex");
   for (const int v : all) largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
-  View view{tissue_.surface()};
+  View view;
+  renew(view, tissue_.surface_number());
+  views_.fill(view);
+  number_ = exchanged_ = view.number;
+  near_ = {all.size(), most_near};
+  pressed_ = {all.size(), most_pressed};
+  sum_.resize(capacity);
+  given_.fill(
+      {std::vector<VertexForce>(all.size()), 0, detail::VertexCopy(most_near), detail::VertexCopy(most_pressed)});
+}
+
+PALPATE_INLINE void TouchingTissue::renew(View& view, std::uint64_t number) {
+  view.surface = tissue_.surface();
   accuracy_ = view.surface.shared_force_accuracy();
   if (!tissue_.view().has_contact_materials()) {
     view.surface.set_materials({});
@@ -37,13 +50,12 @@ PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tis
     accuracy_ = nullptr;
   }
   view.surface.expect(view.surface.positions(), {});
-  view.near_compliance = {all.size(), most_near, most_pressed};
-  views_.fill(view);
-  near_ = {all.size(), most_near};
-  pressed_ = {all.size(), most_pressed};
-  sum_.resize(capacity);
-  given_.fill(
-      {std::vector<VertexForce>(all.size()), 0, detail::VertexCopy(most_near), detail::VertexCopy(most_pressed)});
+  const std::size_t vertices = view.surface.positions().size();
+  view.near_compliance.resize(vertices, most_near, most_pressed);
+  view.near_room = {vertices, most_near};
+  view.pressed_room = {vertices, most_pressed};
+  view.contact = tissue_.contact();
+  view.number = number;
 }
 
 PALPATE_INLINE Matrix3 TouchingTissue::restrained(const View& view, int i, int j, const Matrix3& c) noexcept {
@@ -83,21 +95,34 @@ PALPATE_INLINE double TouchingTissue::compliance_bound(int j) const noexcept {
 }
 
 PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
+  Status status = tissue_.order_status();
+  if (is_behind_.load(std::memory_order_acquire)) status.set(StatusFlag::degraded_model);
   if (views_.update()) take_view();
-  Status status = of_tissue_ | ticked_ | views_.front().status;
+  status |= of_tissue_ | ticked_ | views_.front().status;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
   if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
   return status;
 }
 
-/// A tissue that moves has another compliance after every step: it is taken together with that of the contact.
+/// A tissue that moves or is cut has another compliance then: it is taken together with that of the contact.
 PALPATE_INLINE void TouchingTissue::take_view() noexcept {
   of_tissue_ = tissue_.begin_tick();
   ++revision_;
+  View& view = views_.front();
+  if (std::exchange(number_, view.number) != view.number) {
+    std::swap(near_, view.near_room);
+    std::swap(pressed_, view.pressed_room);
+  }
   near_.clear();
   pressed_.clear();
-  for (int v = 0; tissue_.moves() && v < contact_surface().vertex_count(); ++v)
+  for (int v = 0; tissue_.changes() && v < contact_surface().vertex_count(); ++v)
     largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
+}
+
+PALPATE_INLINE void TouchingTissue::exchange_contacts(ContactProblem& problem) noexcept {
+  View& view = views_.front();
+  if (std::exchange(exchanged_, number_) != number_ && view.contact != nullptr)
+    problem.move_to(*view.contact, view.surface);
 }
 
 PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces,
@@ -118,10 +143,15 @@ PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces
   tissue_.view().end_tick(forces, points);
 }
 
+/// A tissue that is cut may then have another surface.
 PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
+  const std::scoped_lock lock(all_.changes_);
   tissue_.view().prepare_tools(radii, parameters);
-  begin_tick();
   end_tick({});  // the tools of a servo before
+  if (can_be_cut()) all_.find_forces();
+  begin_tick();
+  end_tick({});
+  exchanged_ = number_;
 }
 
 PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<const VertexForce> forces) {
@@ -132,6 +162,7 @@ PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<con
 
 PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, std::size_t body, Status status) {
   View& view = views_.back();
+  if (view.number != problem.surface_number(body)) renew(view, problem.surface_number(body));
   const Forces& given = given_.front();
   view.rows = problem.pressing();
   problem.restraint(body, view.restraint);
@@ -152,9 +183,11 @@ PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, s
   view.surface.set_force_accuracy(view.rows > 0 ? nullptr : accuracy_);  // measured without other tissues
   view.status = status;
   problem.forces(body, drawn_.back());
+  if (!tissue_.moves()) tissue_.set_contact_forces(drawn_.back());
   pushed_.swap(pushed);
   newest_ = &view;
   views_.publish();
+  is_behind_.store(false, std::memory_order_release);
   drawn_.publish();
   updates_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -177,8 +210,8 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
         raise(SetupErrorKind::bad_argument, "contact of a tissue with itself as if it were two",
               "Name every tissue once, and set self_contact where it may touch itself");
   for (const detail::InterfaceTissue& t : tissues) {
-    tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t, options.capacity)));
-    next_step_.push_back(t.moves() ? 0.0 : infinity);
+    tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t, *this, options.capacity)));
+    next_work_.push_back(t.changes() ? 0.0 : infinity);
   }
   problem_ = std::make_unique<detail::InterfaceProblem>(std::move(tissues), options.capacity, options.self_contact);
   constexpr int most_solutions = 10;  // of bodies that overlap at first
@@ -199,9 +232,10 @@ PALPATE_INLINE TouchingTissue& TouchingTissues::tissue(std::size_t k) {
 }
 
 PALPATE_INLINE void TouchingTissues::reset() {
+  const std::scoped_lock lock(changes_);
   for (const auto& t : tissues_) t->end_tick({});
   problem_->clear();
-  solve();
+  find_forces();
 }
 
 PALPATE_INLINE void TouchingTissues::report_slow(bool slow) noexcept {
@@ -218,27 +252,34 @@ PALPATE_INLINE std::span<const VertexForce> TouchingTissues::contact_forces(std:
 }
 
 PALPATE_INLINE BackgroundStep TouchingTissues::background_work() {
-  bool stepped = false;
+  const std::scoped_lock lock(changes_);
+  bool changed = false;
   for (std::size_t k = 0; k < tissues_.size(); ++k)
-    if (next_step_[k] <= time_) {
-      step(k);
-      stepped = true;
-    }
-  if (stepped || next_solution_ <= time_) {
-    solve();
+    if (next_work_[k] <= time_) changed = work(k) || changed;
+  if (changed || next_solution_ <= time_) {
+    find_forces();
     next_solution_ = time_ + options_.interval;
   }
   const double before = time_;
-  time_ = std::min(next_solution_, *std::ranges::min_element(next_step_));
+  time_ = std::min(next_solution_, *std::ranges::min_element(next_work_));
   return {true, time_ - before};
 }
 
+/// Forces on vertices that a reset has dropped since the tick are left out.
 PALPATE_INLINE void TouchingTissues::take_forces() {
-  for (const auto& t : tissues_) t->given_.update();
+  for (const auto& t : tissues_) {
+    t->given_.update();
+    TouchingTissue::Forces& given = t->given_.front();
+    const int vertices = t->tissue_.surface().vertex_count();
+    const auto is_gone = [vertices](int v) { return v >= vertices; };
+    detail::drop_items(given.item, given.count, [&](const VertexForce& f) { return is_gone(f.vertex); });
+    given.near_vertices.drop_if(is_gone);
+    given.pressed.drop_if(is_gone);
+  }
 }
 
-/// With the forces between tissues that belong to those of the last tick.
-PALPATE_INLINE void TouchingTissues::step(std::size_t k) {
+/// The forces between tissues that belong to those of the last tick.
+PALPATE_INLINE void TouchingTissues::follow_ticks(std::size_t k) {
   take_forces();
   VectorX pushed = VectorX::Zero(problem_->pressing());
   for (const auto& t : tissues_)
@@ -247,10 +288,26 @@ PALPATE_INLINE void TouchingTissues::step(std::size_t k) {
   problem_->follow(pushed);
   problem_->forces(k, forces_);
   tissues_[k]->tissue_.set_contact_forces(forces_);
-  next_step_[k] = time_ + tissues_[k]->tissue_.step().next;
+}
+
+/// Whether the contact must be solved again. Cuts that follow each other wait, so that one solution is for several.
+PALPATE_INLINE bool TouchingTissues::work(std::size_t k) {
+  TouchingTissue& t = *tissues_[k];
+  if (t.tissue_.moves()) follow_ticks(k);
+  const std::uint64_t before = t.tissue_.surface_number();
+  const double next = t.tissue_.work().next;
+  const bool is_cut = t.tissue_.surface_number() != before;
+  next_work_[k] = time_ + (is_cut && !t.tissue_.moves() ? std::max(next, options_.interval) : next);
+  if (is_cut) t.is_behind_.store(true, std::memory_order_release);
+  return t.tissue_.moves() || is_cut;
 }
 
 PALPATE_INLINE void TouchingTissues::solve() {
+  const std::scoped_lock lock(changes_);
+  find_forces();
+}
+
+PALPATE_INLINE void TouchingTissues::find_forces() {
   const FlushDenormals flush;
   take_forces();
   for (std::size_t k = 0; k < tissues_.size(); ++k) problem_->load(k, tissues_[k]->given_.front().all());

@@ -104,8 +104,10 @@ class CuttableMovingTissue : public MovingTissue {
 
   /// Orders a cut from a tick; returns false when too many are waiting. Never waits.
   bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
-  Status begin_tick() noexcept {
-    Status status = MovingTissue::begin_tick();
+  Status begin_tick() noexcept { return MovingTissue::begin_tick() | order_status(); }
+  /// degraded_model while an order is open, or after a cut has failed.
+  Status order_status() const noexcept {
+    Status status;
     if (orders_.are_open() || failed_.load(std::memory_order_acquire)) status.set(StatusFlag::degraded_model);
     return status;
   }

@@ -144,20 +144,43 @@ class CuttableTissue : public ModelBase {
     keep_loads(scene().gravity(), others);
   }
 
+  // The thread that cuts, between two calls of background_work: for contact with other tissues (TouchingTissues)
+
+  /// Forces of other tissues on the surface, one per vertex: blades cut the body as they displace it.
+  void set_contact_forces(std::span<const VertexForce> forces) {
+    const std::scoped_lock lock(changes_);
+    process_->set_contact_forces(forces);
+  }
+  /// The surface after the last cut, the number of such changes, a contact problem on it for a session to continue
+  /// with, and the compliance. Valid until the next one.
+  const ContactSurface& newest_surface() const noexcept { return newest_->contact->surface; }
+  std::uint64_t newest_surface_number() const noexcept { return newest_->contact->cut; }
+  std::shared_ptr<ContactProblem> newest_contact() const noexcept {
+    return {newest_->contact, &newest_->contact->problem};
+  }
+  Matrix3 newest_compliance(int i, int j) const noexcept { return newest_->compliance(i, j); }
+
   // The thread that ticks
 
   /// Orders a cut from a tick; returns false when too many are waiting. Never waits.
   bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
   Status begin_tick() noexcept {
-    const bool behind = orders_.are_open() || failed_.load(std::memory_order_acquire);
+    Status status = order_status();
     if (views_.update() && contact().cut != revision_) {  // folding changes nothing that a session stores
       renewed_ = true;
       revision_ = contact().cut;
     }
-    Status status;
-    if (behind || contact().left_out) status.set(StatusFlag::degraded_model);
+    if (contact().left_out) status.set(StatusFlag::degraded_model);
     if (contact().too_far) status.set(StatusFlag::large_displacement);
-    if (served_.is_stalled(orders_.are_open())) status.set(StatusFlag::stalled_tissue);
+    return status;
+  }
+  /// Once per tick: degraded_model while an order is open, or after a cut has failed; stalled_tissue where nobody makes
+  /// cuts.
+  Status order_status() noexcept {
+    Status status;
+    const bool are_open = orders_.are_open();
+    if (are_open || failed_.load(std::memory_order_acquire)) status.set(StatusFlag::degraded_model);
+    if (served_.is_stalled(are_open)) status.set(StatusFlag::stalled_tissue);
     return status;
   }
   /// Moves a session's contact to a new surface.
@@ -219,6 +242,7 @@ class CuttableTissue : public ModelBase {
         parameters, limits(),
         [this](detail::CutView&& made) {
           views_.back() = std::move(made);  // frees views that no tick can access any more
+          newest_ = &views_.back();
           views_.publish();
         },
         setup_report());
@@ -247,7 +271,8 @@ class CuttableTissue : public ModelBase {
   TissueClaim claim_;
   std::atomic<bool> failed_{false};
   TripleBuffer<detail::CutView> views_;
-  std::uint64_t revision_ = 0;  // the last one seen by a tick
+  const detail::CutView* newest_ = nullptr;  // published last: not written before the next one is
+  std::uint64_t revision_ = 0;               // the last one seen by a tick
   bool renewed_ = false;
   std::unique_ptr<detail::CutProcess<E>> process_;
 };

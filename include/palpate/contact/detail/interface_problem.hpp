@@ -24,7 +24,8 @@ class InterfaceProblem {
   /// compliance columns of all their vertices are available.
   InterfaceProblem(std::vector<InterfaceTissue> tissues, int capacity, bool self_contact);
 
-  /// For a present surface and pose of a tissue, under these forces of tools.
+  /// For a present surface and pose of a tissue, under these forces of tools. Where its triangles have changed, rows
+  /// between vertices that still exist keep their forces.
   void load(std::size_t body, std::span<const VertexForce> tools);
   /// Finds the forces for these loads. Flags solver_not_converged, degraded_model (more rows than the capacity),
   /// large_displacement (bodies overlap at rest by a tenth of the thinner one), lost_contact (a vertex or an edge is
@@ -49,6 +50,8 @@ class InterfaceProblem {
   std::span<const Row> rows() const noexcept { return rows_; }
   /// The surface under the forces of tools, without those of rows, model frame [m].
   std::span<const Vector3> base(std::size_t body) const noexcept { return bodies_[body].base; }
+  /// The number of the surface that was loaded last.
+  std::uint64_t surface_number(std::size_t body) const noexcept { return bodies_[body].number; }
   /// Displacement by the rows' forces, 3 per vertex, model frame [m].
   void displacement(std::size_t body, std::vector<double>& u) const;
   /// Updates `followed` for forces of tools that have changed since `solve`, with the same rows closed. `pushed`: sum
@@ -74,7 +77,7 @@ class InterfaceProblem {
     std::vector<double> depths{};
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
-    std::uint64_t revision = 0;                // of the surface
+    std::uint64_t revision = 0, number = 0;    // of the surface; of its triangles
     std::vector<double>
         closed_gap{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
   };
@@ -85,6 +88,7 @@ class InterfaceProblem {
   InterfaceSurface surface(std::size_t body) const noexcept;
   Vector3 direction(const InterfaceRow& row, int body) const noexcept;
   void mark_stale(std::size_t body) noexcept;
+  void renew(std::size_t body);
   double move_bodies();
   bool keeps_shape() const noexcept;
   void find_rows();

@@ -24,6 +24,7 @@ PALPATE_INLINE InterfaceProblem::Body InterfaceProblem::make_body(const Interfac
   const ContactSurface& surface = tissue.surface();
   const ContactSurface& boundary = surface.boundary();
   body.triangles = surface.triangles();
+  body.number = tissue.surface_number();
   body.base = body.now = surface.positions();
   body.bvh = surface.bvh();
   body.depths =
@@ -44,13 +45,27 @@ PALPATE_INLINE void InterfaceProblem::load(std::size_t k, std::span<const Vertex
   const Eigen::Isometry3d before = body.pose;
   body.pose = body.tissue.view().to_world();
   const ContactSurface& surface = body.tissue.surface();
-  const bool is_placed = before.matrix() != body.pose.matrix();
+  const bool is_placed = before.matrix() != body.pose.matrix(), is_cut = body.number != body.tissue.surface_number();
   const bool is_renewed = surface.revision() != body.revision;
+  if (is_cut) renew(k);
   body.revision = surface.revision();
-  if (is_placed || (is_renewed && !body.tissue.moves())) moved_at_rest_ = true;
+  if (is_placed || is_cut || (is_renewed && !body.tissue.moves())) moved_at_rest_ = true;
   if (is_placed || (is_renewed && body.tissue.moves())) mark_stale(k);
   for (int v = 0; v < surface.vertex_count(); ++v)
     body.base[at(v)] = surface.position(v) + body.tissue.displacement(v, tools);
+}
+
+/// The triangles are others, and the compliance. Forces stay on the vertices that there still are.
+PALPATE_INLINE void InterfaceProblem::renew(std::size_t k) {
+  bodies_[k] = make_body(bodies_[k].tissue);
+  const int body = static_cast<int>(k), vertices = static_cast<int>(bodies_[k].base.size());
+  std::erase_if(rows_, [&](const Row& r) {
+    return std::ranges::any_of(r.row.terms,
+                               [&](const InterfaceTerm& t) { return t.body == body && t.vertex >= vertices; });
+  });
+  for (Row& r : rows_)
+    if (r.side_of(body) >= 0)
+      for (std::vector<double>& column : r.response) column.clear();
 }
 
 /// The compliance of a tissue that moves changes with every step; columns are in the frame of the body.
@@ -254,6 +269,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   double change = infinity;
   bool solved = true;
   if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
+  find_responses();  // of rows at surfaces that have changed
   move_bodies();
   for (int i = 0; i < most_linearisations && change > tolerance; ++i) {
     status = {};

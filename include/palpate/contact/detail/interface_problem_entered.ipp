@@ -201,7 +201,8 @@ PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
         return (own.closed_gap[v] < infinity ? beside_closed : elsewhere) * other.facet_length;
       };
       for (std::size_t v = 0; v < own.now.size() && !found; ++v)
-        found = find_nearest(other, own.now[v]).height < -allowed(v);
+        found = !own.tissue.surface().triangles_at(static_cast<int>(v)).empty() &&
+                find_nearest(other, own.now[v]).height < -allowed(v);
       if (!found)
         visit_crossings(own, other, [&](int a, int b, const Crossing& c) {
           found = found || c.depth > std::max(allowed(at(a)), allowed(at(b)));

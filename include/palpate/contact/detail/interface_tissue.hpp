@@ -6,44 +6,72 @@
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-/// A tissue that moves and can be touched by others: the thread that steps it can read the surface without any forces
-/// and the compliance, and set the forces of the other tissues.
+/// A tissue that moves or is cut and can be touched by others: the thread that does its background work can read the
+/// surface without any forces, the number of changes of its triangles, a contact problem for a session to continue with
+/// after such a change, and the compliance, and set the forces of the other tissues.
 template <class T>
-concept MovesBesideOthers = AnnouncesChanges<T> && HasBackgroundWork<T> &&
+concept ChangesBesideOthers = AnnouncesChanges<T> && HasBackgroundWork<T> &&
     requires(T& tissue, const T& constant, std::span<const VertexForce> forces) {
   { constant.newest_surface() }
   noexcept->std::same_as<const ContactSurface&>;
+  { constant.newest_surface_number() }
+  noexcept->std::same_as<std::uint64_t>;
+  { constant.newest_contact() }
+  noexcept->std::same_as<std::shared_ptr<ContactProblem>>;
   { constant.newest_compliance(0, 0) }
   noexcept->FixedExpression<3, 3>;
   tissue.set_contact_forces(forces);
 } && !OutOfDate<decltype(&T::compliance), decltype(&T::newest_compliance)>;
 
-struct MotionFunctions {
+/// One whose surface and compliance are others after every step.
+template <class T>
+concept MovesBesideOthers = ChangesBesideOthers<T> && requires(const T& constant) {
+  constant.steps();
+};
+
+struct ChangeFunctions {
   Status (*begin_tick)(void*) noexcept;
-  BackgroundStep (*step)(void*);
+  BackgroundStep (*work)(void*);
   const ContactSurface& (*newest_surface)(const void*) noexcept;
+  std::uint64_t (*newest_surface_number)(const void*) noexcept;
+  std::shared_ptr<ContactProblem> (*newest_contact)(const void*) noexcept;
   Matrix3 (*newest_compliance)(const void*, int, int) noexcept;
   void (*set_contact_forces)(void*, std::span<const VertexForce>);
+  bool moves;
+  Status (*order_status)(void*) noexcept = nullptr;  ///< null: it cannot be cut
 };
 
-template <MovesBesideOthers T>
-struct MotionCalls {
-  static constexpr MotionFunctions functions{
-      [](void* t) noexcept -> Status { return static_cast<T*>(t)->begin_tick(); },
-      [](void* t) -> BackgroundStep { return static_cast<T*>(t)->background_work(); },
-      [](const void* t) noexcept -> const ContactSurface& { return static_cast<const T*>(t)->newest_surface(); },
-      [](const void* t, int i, int j) noexcept -> Matrix3 { return static_cast<const T*>(t)->newest_compliance(i, j); },
-      [](void* t, std::span<const VertexForce> f) { static_cast<T*>(t)->set_contact_forces(f); }};
+template <ChangesBesideOthers T>
+struct ChangeCalls {
+  static constexpr ChangeFunctions table() noexcept {
+    ChangeFunctions f{
+        [](void* t) noexcept -> Status { return static_cast<T*>(t)->begin_tick(); },
+        [](void* t) -> BackgroundStep { return static_cast<T*>(t)->background_work(); },
+        [](const void* t) noexcept -> const ContactSurface& { return static_cast<const T*>(t)->newest_surface(); },
+        [](const void* t) noexcept { return static_cast<const T*>(t)->newest_surface_number(); },
+        [](const void* t) noexcept { return static_cast<const T*>(t)->newest_contact(); },
+        [](const void* t, int i, int j) noexcept -> Matrix3 {
+          return static_cast<const T*>(t)->newest_compliance(i, j);
+        },
+        [](void* t, std::span<const VertexForce> forces) { static_cast<T*>(t)->set_contact_forces(forces); },
+        MovesBesideOthers<T>};
+    if constexpr (requires(T & t) { t.order_status(); })
+      f.order_status = [](void* t) noexcept -> Status { return static_cast<T*>(t)->order_status(); };
+    return f;
+  }
+  static constexpr ChangeFunctions functions = table();
 };
 
-/// The compliance as the thread that solves the contact has it: of a static tissue, or of one that moves.
+/// The compliance as the thread that solves the contact has it.
 template <class T>
 Matrix3 interface_compliance(const T& tissue, int i, int j) noexcept {
-  if constexpr (MovesBesideOthers<T>)
+  if constexpr (ChangesBesideOthers<T>)
     return tissue.newest_compliance(i, j);
   else
     return tissue.compliance(i, j);
@@ -62,44 +90,59 @@ void interface_column(const void* t, int j, std::span<double> column) noexcept {
   }
 }
 
-/// Of a static tissue all threads read the same; of one that moves, each its own copy.
+/// Of a tissue that neither moves nor is cut, all threads read the same; of another one, each its own copy.
 class InterfaceTissue {
  public:
   template <class T>
   explicit InterfaceTissue(T& tissue) noexcept : view_(tissue), tissue_(&tissue), column_(&interface_column<T>) {
-    if constexpr (MovesBesideOthers<T>) motion_ = &MotionCalls<T>::functions;
+    if constexpr (ChangesBesideOthers<T>) changes_ = &ChangeCalls<T>::functions;
   }
 
   /// As ticks see it.
   TissueView& view() noexcept { return view_; }
   const TissueView& view() const noexcept { return view_; }
-  bool moves() const noexcept { return motion_ != nullptr; }
+  /// Whether it has background work, after which surface and compliance may be others.
+  bool changes() const noexcept { return changes_ != nullptr; }
+  /// Whether they are others after every piece of work; else only where triangles have changed.
+  bool moves() const noexcept { return changes() && changes_->moves; }
   /// Whether its surface and compliance are known to the thread that solves the contact.
   bool can_touch_others() const noexcept {
-    return !view_.can_be_cut() && (moves() || (!view_.announces_changes() && !view_.takes_forces()));
+    return changes() || (!view_.can_be_cut() && !view_.announces_changes() && !view_.takes_forces());
   }
-  /// For the thread that ticks.
+
+  // For the thread that ticks
+
   Status begin_tick() noexcept {
-    if (!moves()) return {};
-    const Status status = motion_->begin_tick(tissue_);
+    if (!changes()) return {};
+    const Status status = changes_->begin_tick(tissue_);
     view_.look();
     return status;
   }
+  /// Whether cuts are ordered and not made yet, and whether nobody makes them.
+  Status order_status() noexcept {
+    return changes() && changes_->order_status != nullptr ? changes_->order_status(tissue_) : Status{};
+  }
 
-  // For the thread that steps and solves the contact
+  // For the thread that does the work and solves the contact
 
-  BackgroundStep step() { return motion_->step(tissue_); }
+  BackgroundStep work() { return changes_->work(tissue_); }
   const ContactSurface& surface() const noexcept {
-    return moves() ? motion_->newest_surface(tissue_) : view_.contact_surface();
+    return changes() ? changes_->newest_surface(tissue_) : view_.contact_surface();
+  }
+  /// Changes whenever the surface has other triangles; vertices keep their numbers, new ones follow.
+  std::uint64_t surface_number() const noexcept { return changes() ? changes_->newest_surface_number(tissue_) : 0; }
+  /// Of that surface, made for the tools of the session; null before a cut. A session takes its workspaces.
+  std::shared_ptr<ContactProblem> contact() const noexcept {
+    return changes() ? changes_->newest_contact(tissue_) : nullptr;
   }
   Matrix3 compliance(int i, int j) const noexcept {
-    return moves() ? motion_->newest_compliance(tissue_, i, j) : view_.compliance(i, j);
+    return changes() ? changes_->newest_compliance(tissue_, i, j) : view_.compliance(i, j);
   }
   /// `column` has 9 entries per vertex.
   void column(int j, std::span<double> column) const noexcept { column_(tissue_, j, column); }
   Vector3 displacement(int i, std::span<const VertexForce> forces) const noexcept {
     Vector3 u(0.0, 0.0, 0.0);
-    if (!moves()) {
+    if (!changes()) {
       view_.displacement(i, forces, u);
       return u;
     }
@@ -107,14 +150,14 @@ class InterfaceTissue {
     return u;
   }
   void set_contact_forces(std::span<const VertexForce> forces) {
-    if (moves()) motion_->set_contact_forces(tissue_, forces);
+    if (changes()) changes_->set_contact_forces(tissue_, forces);
   }
 
  private:
   TissueView view_;
   void* tissue_;
   void (*column_)(const void*, int, std::span<double>) noexcept;
-  const MotionFunctions* motion_ = nullptr;
+  const ChangeFunctions* changes_ = nullptr;
 };
 
 }}}  // namespace palpate::detail

@@ -11,6 +11,13 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
+/// Removes those of the first `count` items for which `is_gone` is true.
+template <class Items, class IsGone>
+void drop_items(Items& items, std::size_t& count, const IsGone& is_gone) noexcept {
+  const auto end = items.begin() + static_cast<std::ptrdiff_t>(count);
+  count = static_cast<std::size_t>(std::remove_if(items.begin(), end, is_gone) - items.begin());
+}
+
 /// A list in which every vertex is once, in the order of the requests. Only the constructor allocates.
 class RequestedVertices {
  public:
@@ -46,6 +53,10 @@ class VertexCopy {
   void copy(std::span<const int> vertices) noexcept {
     count_ = std::min(vertices.size(), item_.size());
     std::copy_n(vertices.begin(), count_, item_.begin());
+  }
+  template <class IsGone>
+  void drop_if(const IsGone& is_gone) noexcept {
+    drop_items(item_, count_, is_gone);
   }
   std::span<const int> all() const noexcept { return {item_.data(), count_}; }
 

@@ -19,6 +19,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,6 +66,9 @@ class CutProcess : public CutState<E> {
     return true;
   }
 
+  /// Forces on vertices with which blades find the body displaced, besides its loads.
+  void set_contact_forces(std::span<const VertexForce> forces) { contact_forces_.assign(forces.begin(), forces.end()); }
+
   /// Replaces loads and prescribed values; a new factor. Strong guarantee.
   void set_loads(const std::vector<BoundaryFace>& boundary, const Scene& scene) {
     auto physics = std::make_unique<CutPhysics<E>>(physics_->body, boundary, scene);
@@ -89,6 +93,7 @@ class CutProcess : public CutState<E> {
     };
     run_or_undo([&] { set_loads(boundary, scene); }, undo);
     edges_.clear();
+    contact_forces_.clear();
     before_.reset();
     const CutReport before = std::exchange(report_, CutReport{});
     report_.kept = system_.kept();
@@ -179,7 +184,7 @@ class CutProcess : public CutState<E> {
     if (!taken.sweeps.empty()) {
       if (std::exchange(is_due(Check::inside), false)) system_.recover();
       if (swept_.size() == 0 || report_.displacement <= largest_linear_displacement) {
-        VectorX swept = system_.displacement();  // an assignment that finds no memory would leave it broken
+        VectorX swept = displacement_beside_others();  // an assignment that finds no memory would leave it broken
         swept_.swap(swept);
       }
     }
@@ -190,6 +195,10 @@ class CutProcess : public CutState<E> {
                      (resting_.rests(node) ? resting_.displacement(node) : node_vector(swept_, known)));
     };
     return combined(taken, topology_, local, swept, edges_);
+  }
+
+  VectorX displacement_beside_others() {
+    return contact_forces_.empty() ? system_.displacement() : State::displacement_with(contact_forces_);
   }
 
   /// Updates the compliance and publishes it. Makes a new factor if the update is not positive definite to working
@@ -294,11 +303,12 @@ class CutProcess : public CutState<E> {
   CutSurface<E> whole_surface_;
   CutParameters parameters_;
   RestingEdges edges_;
-  VectorX swept_;                   // displacement of the nodes through which blades cut
-  std::optional<Parts> before_;     // the last order
-  bool follows_topology_ = true;    // the compliance is that of the topology
-  bool has_new_compliance_ = true;  // it has that of the present order
-  bool is_behind_ = false;          // it is not published, because memory was short
+  std::vector<VertexForce> contact_forces_;  // of other tissues
+  VectorX swept_;                            // displacement of the nodes through which blades cut
+  std::optional<Parts> before_;              // the last order
+  bool follows_topology_ = true;             // the compliance is that of the topology
+  bool has_new_compliance_ = true;           // it has that of the present order
+  bool is_behind_ = false;                   // it is not published, because memory was short
   std::array<bool, checks> due_{};
   std::size_t last_check_ = 0;
   std::unique_ptr<CutRenewal<E>> renewal_;  // declared last: its thread refers to the physics

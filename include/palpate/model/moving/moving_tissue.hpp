@@ -94,6 +94,9 @@ class MovingTissue : public ModelBase {
   void set_contact_forces(std::span<const VertexForce> forces);
   /// The surface after the last step without the forces on it, and its compliance. Valid until the next step.
   const ContactSurface& newest_surface() const noexcept { return newest().surface; }
+  /// Changes of its triangles by cuts.
+  std::uint64_t newest_surface_number() const noexcept { return newest().number; }
+  std::shared_ptr<ContactProblem> newest_contact() const noexcept { return newest().contact; }
   Matrix3 newest_compliance(int i, int j) const noexcept { return evaluate(newest(), i, j); }
 
   // Any thread but the one that ticks

@@ -3,6 +3,7 @@
 
 #include <palpate/model/moving/moving_tissue.hpp>
 
+#include <palpate/contact/detail/requested_vertices.hpp>
 #include <palpate/contact/subfacet_compliance.hpp>
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/core/platform.hpp>
@@ -18,17 +19,6 @@
 namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<MovingTissue>);
-
-namespace detail {
-
-/// Removes those of the first `count` items for which `is_gone` is true.
-template <class Items, class IsGone>
-void drop_items(Items& items, std::size_t& count, const IsGone& is_gone) noexcept {
-  const auto end = items.begin() + static_cast<std::ptrdiff_t>(count);
-  count = static_cast<std::size_t>(std::remove_if(items.begin(), end, is_gone) - items.begin());
-}
-
-}  // namespace detail
 
 PALPATE_INLINE MovingTissue::MovingTissue(const SetupOptions& options) : ModelBase(options) {
   if (!options.cache_file.empty())
