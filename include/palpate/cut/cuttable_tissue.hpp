@@ -51,7 +51,8 @@ class CuttableTissue : public ModelBase {
     detail::require_ids<E>(order, elements_);
     orders_.add(std::move(order));
   }
-  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads.
+  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads, and
+  /// by the tissues that it touches.
   void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
   /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
