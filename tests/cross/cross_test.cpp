@@ -226,16 +226,7 @@ TEST_CASE("friction may hold much on the flanks of a deep press, but not more", 
 }
 
 TEST_CASE("scenes whose faults are mended pass", "[cross]") {
-  // Another tool loses its readings: its force was extrapolated with a compliance learned from rounding.
-  const Scene lost = scene_of(
-      "body plate\nedge 0.0016\ncells_x 3\ncells_y 3\ncells_z 1\njitter 0.19\ntouched surface\nsupport sides\n"
-      "element hex8\nlaw st_venant_kirchhoff\nsolver cut_quasi_newton_float\nyoungs_modulus 1500\n"
-      "poisson_ratio 0.45\nfriction 0.77\ninertia 0\nmember group\nseed 112\ntool 0 kind plate\n"
-      "tool 0 radius 0.00026\ntool 0 u 0.53\ntool 0 v 0.67\ntool 0 depth 0.23\ntool 1 kind capsule\n"
-      "tool 1 radius 0.00052\ntool 1 path lost\ntool 1 u 0.56\ntool 1 v 0.00026\ntool 1 depth 0.4\n");
-  const Run r = run(lost);
-  for (const char* oracle : {"rotated", "scaled", "shifted"})
-    for (const Finding& f : check(oracle, lost, r)) CHECK(f.flagged);
+  // Rounding of forces was measured in one rotation, where it was an eighth of what it is in others.
   const Scene pressed = scene_of(
       "edge 0.0036\ncells_x 5\ncells_y 4\ncells_z 1\nelement smoothed_tet4\nlaw neo_hookean\n"
       "solver quasi_newton_float\nyoungs_modulus 26000\npoisson_ratio 0.4999\nload pressure\nload_size 0.04\n"

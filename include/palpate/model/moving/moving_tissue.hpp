@@ -305,7 +305,6 @@ class MovingTissue : public ModelBase {
   VectorX response_;  // of the last step to forces
   detail::VertexCompliance compliance_;
   detail::SecantCompliance secants_;
-  double error_ = 0.0;                         // of the equilibrium of the last step, relative to its forces
   bool found_stiffness_ = false;               // a pair of the last step
   std::vector<NodeId> nodes_;                  // of every vertex
   std::vector<int> every_;                     // vertex

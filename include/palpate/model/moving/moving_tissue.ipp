@@ -148,10 +148,9 @@ PALPATE_INLINE MotionStep MovingTissue::advance() noexcept {
     if (loads_changed_)
       secants_.clear();
     else if (done.taken && motion_->is_static())
-      record_pair(before, error_ + done.relative_residual);
+      record_pair(before, done.relative_residual);
     loads_changed_ = false;
     find_moved(moved_);
-    if (done.taken) error_ = done.relative_residual;
     if (was_slit && presses_beside_slit()) record_response(before, done);
   }
   Status status = done.status;
@@ -233,8 +232,7 @@ PALPATE_INLINE void MovingTissue::set_springs(const Forces& forces) noexcept {
   motion_->set_springs(springs_.all());
 }
 
-/// Records the change of displacement since `moved_` that the change of forces since `before` has caused. `error` is
-/// that of both equilibria: with that of the last alone, hardly changed forces were recorded after a fast approach.
+/// Records the change of displacement since `moved_` that the change of forces since `before` has caused.
 PALPATE_INLINE void MovingTissue::record_pair(const Forces& before, double error) noexcept {
   moved_before_.swap(moved_);
   find_moved(moved_);
@@ -335,7 +333,6 @@ PALPATE_INLINE void MovingTissue::restart() {
   near_.count = pressed_.count = 0;  // of ticks before the reset
   secants_.clear();
   find_moved(moved_);
-  error_ = 0.0;
   loads_changed_ = was_slit_ = false;
   steps_ = 0;
   publish({});

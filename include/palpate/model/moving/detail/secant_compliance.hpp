@@ -59,7 +59,7 @@ class SecantCompliance {
   /// Forgets all pairs.
   void clear() noexcept { count_ = 0; }
   /// Records that `before`, `after` [N] caused displacements `from`, `to` of the vertices [m], unless the forces hardly
-  /// changed, compared with the `error` of both equilibria relative to the forces, or the pair has no positive
+  /// changed, compared with the `error` of the equilibrium relative to the forces, or the pair has no positive
   /// compliance: then returns false.
   bool record(std::span<const VertexForce> before, std::span<const VertexForce> after, std::span<const Vector3> from,
               std::span<const Vector3> to, double error) noexcept;
@@ -70,7 +70,7 @@ class SecantCompliance {
                   SecantTerms& terms) const noexcept;
 
   /// Smallest change of forces, relative to the forces, that is recorded; and relative to the error.
-  static constexpr double smallest_change = 1e-3, smallest_change_of_error = 20.0;
+  static constexpr double smallest_change = 1e-3, smallest_change_of_error = 10.0;
 
  private:
   struct Pair {
