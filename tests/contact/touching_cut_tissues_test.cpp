@@ -249,6 +249,8 @@ TEST_CASE("a blade of a session cuts one of the tissues that touch", "[contact][
   Stack<Static, Static> others(3);
   TouchingTissues uncut(others.below, others.above);
   CHECK_REFUSED(SetupErrorKind::unsupported, HapticServo(uncut.group(), BladeTool{.edge = {0.0, 0.01, 0.0}}));
+  CHECK_REFUSED(SetupErrorKind::unsupported,
+                TouchingTissues(TissueContactOptions{.self_contact = true}, others.below, stack.above));
 }
 
 TEST_CASE("a piece that is cut off touches nothing", "[contact][touching][cut]") {
@@ -268,6 +270,52 @@ TEST_CASE("a piece that is cut off touches nothing", "[contact][touching][cut]")
   tissue.begin_tick();
   for (const VertexForce& f : tissues.contact_forces(1))
     CHECK_FALSE(tissue.contact_surface().triangles_at(f.vertex).empty());
+}
+
+TEST_CASE("what is cut away presses nothing, also where an edge pressed", "[contact][touching][cut]") {
+  const auto wedge = [] { return Cut(wedge_mesh(), Scene().fix("z0").touch("surface"), linear(5e3, 0.3)); };
+  Cut below = wedge(), above = wedge();
+  Eigen::Isometry3d pose(Eigen::Translation3d(0.5 * side / 6.0, 0.5 * side / 6.0, -0.3e-3));
+  pose.rotate(Eigen::AngleAxisd(0.5 * 3.14159265358979, Vector3::UnitZ()));
+  pose.rotate(Eigen::AngleAxisd(3.14159265358979, Vector3::UnitX()));
+  above.set_pose(pose);
+  TouchingTissues tissues(below, above);
+  CHECK(tissues.report().force > 1e-3);
+  below.cut(CutOrder{
+      .remove = elements_within(below.body().mesh, where::above({0.0, 0.0, -5e-3}).relative_to(below.origin())),
+      .open = {}});
+  finish(tissues);
+  tissues.solve();
+  CHECK(tissues.report().force == 0.0);
+}
+
+TEST_CASE("a tissue of which nothing is left touches nothing", "[contact][touching][cut]") {
+  const auto remove_all = [](auto& stack) {
+    stack.below.set_pose(lowered(-0.4e-3));
+    TouchingTissues tissues(stack.below, stack.above);
+    CutOrder all;
+    for (Index e = 0; e < stack.above.body().mesh.element_count(); ++e) all.remove.push_back(e);
+    CHECK(press_and_cut(tissues, [&] { stack.above.cut(all); }) == 0.0);
+    CHECK(tissues.report().force == 0.0);
+  };
+  Stack<Static, Cut> linear_stack(3);
+  remove_all(linear_stack);
+  Stack<Static, CutMoving> moving_stack(3);
+  remove_all(moving_stack);
+}
+
+TEST_CASE("a moving tissue that was cut and is reset steps on", "[contact][touching][cut]") {
+  Stack<Static, CutMoving> stack(3, 1);
+  stack.below.set_pose(lowered(-0.4e-3));
+  TouchingTissues tissues(stack.below, stack.above);
+  stack.above.cut(slit());
+  finish(tissues);
+  const double cut = tissues.report().force;
+  stack.above.reset();
+  tissues.background_work();  // beside the surface of before
+  tissues.reset();
+  finish(tissues);
+  CHECK(tissues.report().force > cut);
 }
 
 TEST_CASE("touching tissues that were cut obey the laws of tissues", "[contact][touching][cut][laws]") {

@@ -26,6 +26,12 @@ inline constexpr double side = 20e-3;
 inline Mesh<Tet4> box(double width, double height, std::array<int, 3> cells, double z, double corner = 0.0) {
   return box_tet4({width, width, height}, cells, BoxSplit::five_mirrored, {corner, corner, z});
 }
+/// A ridge along x, at z = 0.
+inline Mesh<Tet4> wedge_mesh() {
+  Mesh<Tet4> mesh = box(side, 10e-3, {6, 4, 5}, -10e-3, -0.5 * side);
+  for (Vector3& x : mesh.positions) x[1] *= (1e-6 - x[2]) / 10e-3;
+  return mesh;
+}
 constexpr LinearElastic linear(double youngs_modulus, double poisson_ratio = 0.45) {
   return {.youngs_modulus = youngs_modulus, .poisson_ratio = poisson_ratio, .density = 1000.0};
 }

@@ -355,11 +355,7 @@ TEST_CASE("a small globe does not enter a large facet", "[contact][touching]") {
 
 TEST_CASE("an edge across an edge has the force of the two points where they meet", "[contact][touching]") {
   // Wedges, ridge across ridge: no vertex enters the other one. The middle of an edge is there, of both.
-  const auto wedge = [] {
-    Mesh<Tet4> mesh = box(side, 10e-3, {6, 4, 5}, -10e-3, -0.5 * side);
-    for (Vector3& x : mesh.positions) x[1] *= (1e-6 - x[2]) / 10e-3;
-    return Static(mesh, Scene().fix("z0").touch("surface"), linear(5e3, 0.3));
-  };
+  const auto wedge = [] { return Static(wedge_mesh(), Scene().fix("z0").touch("surface"), linear(5e3, 0.3)); };
   Static below = wedge(), above = wedge();
   for (const double overlap : {0.2e-3, 0.5e-3}) {
     Eigen::Isometry3d pose(Eigen::Translation3d(0.5 * side / 6.0, 0.5 * side / 6.0, -overlap));

@@ -99,6 +99,7 @@ class TouchingTissue {
   /// For the thread that solves: the surface as tools do not press it, with the rows closed as they are. With the
   /// forces of the last tick, its compliance gives the surface that was found.
   void publish(detail::InterfaceProblem& problem, std::size_t body, Status status);
+  void show_forces(std::span<const VertexForce> of_others, std::span<const VertexForce> of_tools);
   /// Sum of Z f over forces.
   static VectorX pushed_by(const View& view, std::span<const VertexForce> forces);
 
@@ -121,7 +122,9 @@ class TouchingTissue {
   std::uint64_t revision_ = 0, published_ = 0;
   std::atomic<std::uint64_t> updates_{0};
   std::atomic<bool> slow_{false}, failed_{false};
-  std::atomic<bool> is_behind_{false};  // a cut is made, and ticks do not have it
+  std::atomic<bool> is_behind_{false};   // a cut is made, and ticks do not have it
+  std::atomic<std::uint64_t> taken_{0};  // by ticks: number of the last surface
+  int postponed_ = 0;                    // how often the next cut was
   Status ticked_;
   TissueClaim claim_;
 };
@@ -147,7 +150,8 @@ class TouchingTissue {
 class TouchingTissues {
  public:
   /// Of at least two tissues, or one with self contact. Solves up to ten times; allocates. Throws unsupported for a
-  /// tissue that stiffens, and for a static one whose columns are not all stored; bad_argument for a tissue without
+  /// tissue that stiffens, for a static one whose columns are not all stored, and for one that can be cut with self
+  /// contact; bad_argument for a tissue without
   /// touchable surface and for options that make no sense; TissueClaim's error for a tissue that moves or is cut and
   /// that a servo uses.
   template <class... T>
@@ -175,28 +179,33 @@ class TouchingTissues {
   void report_slow(bool slow) noexcept;
   void report_failed(bool failed) noexcept;
 
-  /// Forces of the other tissues on the vertices of one, as found last; for one drawing thread. A static tissue is
-  /// drawn with these and those of the tools. Valid until the next call for that tissue.
+  /// Forces of the other tissues on the vertices of one, as found last; for one drawing thread. A tissue that does not
+  /// move is drawn with these and those of the tools. Valid until the next call for that tissue.
   std::span<const VertexForce> contact_forces(std::size_t k);
 
-  /// Of the last solution; for the thread that does the background work.
+  /// Of the last solution.
   struct Report {
     int rows = 0, pressing = 0;  ///< gaps that are open or closed, and those that press
     double force = 0.0;          ///< sum of the magnitudes of all forces, in any direction [N]
     Status status;
   };
-  Report report() const noexcept { return report_; }
+  /// From any thread; waits for a step or solution in progress.
+  Report report() const {
+    const std::scoped_lock lock(changes_);
+    return report_;
+  }
 
  private:
   friend class TouchingTissue;
   void take_forces();
   bool work(std::size_t k);
+  bool postpones_cut(TouchingTissue& tissue) const noexcept;
   void follow_ticks(std::size_t k);
   void find_forces();
   TouchingTissues(std::vector<detail::InterfaceTissue> tissues, const TissueContactOptions& options);
 
   TissueContactOptions options_;
-  std::mutex changes_;  // of what follows
+  mutable std::mutex changes_;  // of what follows
   std::vector<std::unique_ptr<TouchingTissue>> tissues_;
   std::unique_ptr<detail::InterfaceProblem> problem_;
   double time_ = 0.0, next_solution_ = 0.0;  // of what was done [s]

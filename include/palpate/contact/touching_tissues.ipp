@@ -21,7 +21,8 @@ PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tis
   std::vector<int> all(static_cast<std::size_t>(tissue_.surface().vertex_count()));
   std::iota(all.begin(), all.end(), 0);
   if (!tissue_.can_touch_others())
-    raise(SetupErrorKind::unsupported, "contact with other tissues for one that stiffens",
+    raise(SetupErrorKind::unsupported,
+          "contact with other tissues for one that stiffens, or for a class around one that moves or is cut",
           "Use Condensed<...>, Implicit<...> or Cuttable<...> of these for a tissue that touches others");
   if (tissue_.surface().triangles().empty())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
@@ -96,8 +97,10 @@ PALPATE_INLINE double TouchingTissue::compliance_bound(int j) const noexcept {
 
 PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
   Status status = tissue_.order_status();
-  if (is_behind_.load(std::memory_order_acquire)) status.set(StatusFlag::degraded_model);
-  if (views_.update()) take_view();
+  const bool is_behind = is_behind_.load(std::memory_order_acquire);
+  if (is_behind) status.set(StatusFlag::degraded_model);
+  const bool has_old_surface = is_behind && !tissue_.moves();  // the compliance may already be that after the cut
+  if (!has_old_surface && views_.update()) take_view();
   status |= of_tissue_ | ticked_ | views_.front().status;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
   if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
@@ -115,6 +118,7 @@ PALPATE_INLINE void TouchingTissue::take_view() noexcept {
   }
   near_.clear();
   pressed_.clear();
+  taken_.store(view.surface.revision(), std::memory_order_release);
   for (int v = 0; tissue_.changes() && v < contact_surface().vertex_count(); ++v)
     largest_bound_ = std::max(largest_bound_, tissue_.view().compliance_bound(v));
 }
@@ -154,6 +158,15 @@ PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const 
   exchanged_ = number_;
 }
 
+/// For where blades cut.
+PALPATE_INLINE void TouchingTissue::show_forces(std::span<const VertexForce> of_others,
+                                                std::span<const VertexForce> of_tools) {
+  if (!tissue_.changes()) return;
+  std::vector<VertexForce> all(of_others.begin(), of_others.end());
+  all.insert(all.end(), of_tools.begin(), of_tools.end());
+  tissue_.set_contact_forces(all);
+}
+
 PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<const VertexForce> forces) {
   VectorX pushed = VectorX::Zero(view.rows);
   for (const VertexForce& f : forces) pushed += restraint(view, f.vertex) * f.force.in_model_axes();
@@ -183,7 +196,7 @@ PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, s
   view.surface.set_force_accuracy(view.rows > 0 ? nullptr : accuracy_);  // measured without other tissues
   view.status = status;
   problem.forces(body, drawn_.back());
-  if (!tissue_.moves()) tissue_.set_contact_forces(drawn_.back());
+  if (!tissue_.moves()) show_forces(drawn_.back(), given.all());
   pushed_.swap(pushed);
   newest_ = &view;
   views_.publish();
@@ -210,6 +223,9 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
         raise(SetupErrorKind::bad_argument, "contact of a tissue with itself as if it were two",
               "Name every tissue once, and set self_contact where it may touch itself");
   for (const detail::InterfaceTissue& t : tissues) {
+    if (options.self_contact && t.view().can_be_cut())
+      raise(SetupErrorKind::unsupported, "contact with itself for a tissue that can be cut",
+            "The lips of a slit would press each other apart: leave self_contact out");
     tissues_.push_back(std::unique_ptr<TouchingTissue>(new TouchingTissue(t, *this, options.capacity)));
     next_work_.push_back(t.changes() ? 0.0 : infinity);
   }
@@ -286,19 +302,38 @@ PALPATE_INLINE void TouchingTissues::follow_ticks(std::size_t k) {
     if (t->pushed_.size() == pushed.size())  // else a solution has failed
       pushed += TouchingTissue::pushed_by(*t->newest_, t->given_.front().all()) - t->pushed_;
   problem_->follow(pushed);
-  problem_->forces(k, forces_);
-  tissues_[k]->tissue_.set_contact_forces(forces_);
+  detail::InterfaceTissue& tissue = tissues_[k]->tissue_;
+  forces_.clear();
+  if (problem_->surface_number(k) == tissue.surface_number()) problem_->forces(k, forces_);  // else it was reset
+  tissue.set_contact_forces(forces_);
+}
+
+/// Until ticks have the surface of the last cut: they take it together with the compliance, which is that of the newest
+/// one. Not for long: there may be no ticks.
+PALPATE_INLINE bool TouchingTissues::postpones_cut(TouchingTissue& t) const noexcept {
+  constexpr int most = 10;
+  const bool is_taken = t.taken_.load(std::memory_order_acquire) == t.published_;
+  t.postponed_ = is_taken || t.postponed_ == most ? 0 : t.postponed_ + 1;
+  return t.postponed_ > 0;
 }
 
 /// Whether the contact must be solved again. Cuts that follow each other wait, so that one solution is for several.
 PALPATE_INLINE bool TouchingTissues::work(std::size_t k) {
   TouchingTissue& t = *tissues_[k];
+  constexpr double wait = 2e-4;  // [s]
   if (t.tissue_.moves()) follow_ticks(k);
+  if (t.tissue_.has_orders()) {
+    if (!t.tissue_.moves() && postpones_cut(t)) {
+      next_work_[k] = time_ + wait;
+      return false;
+    }
+    t.is_behind_.store(true, std::memory_order_release);
+  }
   const std::uint64_t before = t.tissue_.surface_number();
   const double next = t.tissue_.work().next;
   const bool is_cut = t.tissue_.surface_number() != before;
   next_work_[k] = time_ + (is_cut && !t.tissue_.moves() ? std::max(next, options_.interval) : next);
-  if (is_cut) t.is_behind_.store(true, std::memory_order_release);
+  t.is_behind_.store(is_cut, std::memory_order_release);
   return t.tissue_.moves() || is_cut;
 }
 

@@ -105,6 +105,7 @@ class CuttableMovingTissue : public MovingTissue {
   /// Orders a cut from a tick; returns false when too many are waiting. Never waits.
   bool try_cut(const BladeSweep& sweep) noexcept { return orders_.try_add(sweep); }
   Status begin_tick() noexcept { return MovingTissue::begin_tick() | order_status(); }
+  bool has_orders() const noexcept { return orders_.are_open(); }
   /// degraded_model while an order is open, or after a cut has failed.
   Status order_status() const noexcept {
     Status status;

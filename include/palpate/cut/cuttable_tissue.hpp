@@ -51,8 +51,8 @@ class CuttableTissue : public ModelBase {
     detail::require_ids<E>(order, elements_);
     orders_.add(std::move(order));
   }
-  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads, and
-  /// by the tissues that it touches.
+  /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads,
+  /// and, in TouchingTissues, by the other tissues and the tools.
   void cut(const BladeSweep& sweep) { orders_.add(sweep); }
 
   /// Applies all orders as one cut, publishes the new compliance, then folds the update in. Without orders, runs one of
@@ -147,7 +147,7 @@ class CuttableTissue : public ModelBase {
 
   // The thread that cuts, between two calls of background_work: for contact with other tissues (TouchingTissues)
 
-  /// Forces of other tissues on the surface, one per vertex: blades cut the body as they displace it.
+  /// Forces of other tissues and of tools on the surface: blades cut the body as they displace it.
   void set_contact_forces(std::span<const VertexForce> forces) {
     const std::scoped_lock lock(changes_);
     process_->set_contact_forces(forces);
@@ -175,6 +175,7 @@ class CuttableTissue : public ModelBase {
     if (contact().too_far) status.set(StatusFlag::large_displacement);
     return status;
   }
+  bool has_orders() const noexcept { return orders_.are_open(); }
   /// Once per tick: degraded_model while an order is open, or after a cut has failed; stalled_tissue where nobody makes
   /// cuts.
   Status order_status() noexcept {

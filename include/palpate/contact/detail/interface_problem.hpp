@@ -58,7 +58,10 @@ class InterfaceProblem {
   /// of Z f over the changes of all bodies.
   void follow(const VectorX& pushed);
   /// Forgets all rows.
-  void clear() noexcept { rows_.clear(); }
+  void clear() noexcept {
+    rows_.clear();
+    pressing_.clear();
+  }
   /// The rows' forces on the vertices of a body, as `follow` has them.
   void forces(std::size_t body, std::vector<VertexForce>& forces) const;
   /// Number of rows that press.

@@ -55,14 +55,19 @@ PALPATE_INLINE void InterfaceProblem::load(std::size_t k, std::span<const Vertex
     body.base[at(v)] = surface.position(v) + body.tissue.displacement(v, tools);
 }
 
-/// The triangles are others, and the compliance. Forces stay on the vertices that there still are.
+/// The triangles are others, and the compliance. Forces stay on the vertices that are still on a triangle; edges that
+/// press are found again.
 PALPATE_INLINE void InterfaceProblem::renew(std::size_t k) {
   bodies_[k] = make_body(bodies_[k].tissue);
-  const int body = static_cast<int>(k), vertices = static_cast<int>(bodies_[k].base.size());
+  const int body = static_cast<int>(k);
+  const ContactSurface& surface = bodies_[k].tissue.surface();
+  const auto is_gone = [&](const InterfaceTerm& t) {
+    return t.body == body && (t.vertex >= surface.vertex_count() || surface.triangles_at(t.vertex).empty());
+  };
   std::erase_if(rows_, [&](const Row& r) {
-    return std::ranges::any_of(r.row.terms,
-                               [&](const InterfaceTerm& t) { return t.body == body && t.vertex >= vertices; });
+    return r.side_of(body) >= 0 && (r.row.key.part == InterfacePart::edge || std::ranges::any_of(r.row.terms, is_gone));
   });
+  pressing_.clear();
   for (Row& r : rows_)
     if (r.side_of(body) >= 0)
       for (std::vector<double>& column : r.response) column.clear();
@@ -123,6 +128,7 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
 /// False where rows that contradict each other have moved a body by more than its size.
 PALPATE_INLINE bool InterfaceProblem::keeps_shape() const noexcept {
   for (const Body& body : bodies_) {
+    if (body.triangles.empty()) continue;  // all of it has been cut away
     const double size = body.tissue.surface().bvh().bounds().size().norm();
     for (std::size_t v = 0; v < body.now.size(); ++v)
       if (!((body.now[v] - body.pose * body.base[v]).norm() <= size)) return false;
@@ -147,7 +153,7 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
   geometry_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     for (std::size_t l = k; l < bodies_.size(); ++l) {
-      if (k == l && !self_contact_) continue;
+      if ((k == l && !self_contact_) || bodies_[k].triangles.empty() || bodies_[l].triangles.empty()) continue;
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
       geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length));

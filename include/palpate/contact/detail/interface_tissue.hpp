@@ -44,7 +44,8 @@ struct ChangeFunctions {
   Matrix3 (*newest_compliance)(const void*, int, int) noexcept;
   void (*set_contact_forces)(void*, std::span<const VertexForce>);
   bool moves;
-  Status (*order_status)(void*) noexcept = nullptr;  ///< null: it cannot be cut
+  Status (*order_status)(void*) noexcept = nullptr;  ///< null, as the next: it cannot be cut
+  bool (*has_orders)(const void*) noexcept = nullptr;
 };
 
 template <ChangesBesideOthers T>
@@ -61,8 +62,10 @@ struct ChangeCalls {
         },
         [](void* t, std::span<const VertexForce> forces) { static_cast<T*>(t)->set_contact_forces(forces); },
         MovesBesideOthers<T>};
-    if constexpr (requires(T & t) { t.order_status(); })
+    if constexpr (requires(T & t) { t.order_status(); }) {
       f.order_status = [](void* t) noexcept -> Status { return static_cast<T*>(t)->order_status(); };
+      f.has_orders = [](const void* t) noexcept -> bool { return static_cast<const T*>(t)->has_orders(); };
+    }
     return f;
   }
   static constexpr ChangeFunctions functions = table();
@@ -126,6 +129,10 @@ class InterfaceTissue {
   // For the thread that does the work and solves the contact
 
   BackgroundStep work() { return changes_->work(tissue_); }
+  /// Whether cuts are ordered and not made yet.
+  bool has_orders() const noexcept {
+    return changes() && changes_->has_orders != nullptr && changes_->has_orders(tissue_);
+  }
   const ContactSurface& surface() const noexcept {
     return changes() ? changes_->newest_surface(tissue_) : view_.contact_surface();
   }

@@ -303,7 +303,7 @@ class CutProcess : public CutState<E> {
   CutSurface<E> whole_surface_;
   CutParameters parameters_;
   RestingEdges edges_;
-  std::vector<VertexForce> contact_forces_;  // of other tissues
+  std::vector<VertexForce> contact_forces_;  // of other tissues and tools
   VectorX swept_;                            // displacement of the nodes through which blades cut
   std::optional<Parts> before_;              // the last order
   bool follows_topology_ = true;             // the compliance is that of the topology
