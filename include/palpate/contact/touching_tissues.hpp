@@ -31,8 +31,8 @@ class TouchingTissues;
 
 /// A tissue as tools feel it: moved by the tissues that it touches, with a compliance that includes them. Satisfies
 /// TissueModel; for one servo at a time. Part of TouchingTissues. Ticks read blocks of the compliance that are ready
-/// near the tools; another block costs 9 multiplications per gap that presses. A blade cuts it if it cuts the tissue:
-/// ticks report degraded_model until they feel the cut.
+/// near the tools; another block costs 9 multiplications per gap that presses. Where the tissue can be cut, blades cut
+/// it, and ticks report degraded_model until they feel the cut.
 class TouchingTissue {
  public:
   TouchingTissue(const TouchingTissue&) = delete;
@@ -150,10 +150,9 @@ class TouchingTissue {
 class TouchingTissues {
  public:
   /// Of at least two tissues, or one with self contact. Solves up to ten times; allocates. Throws unsupported for a
-  /// tissue that stiffens, for a static one whose columns are not all stored, and for one that can be cut with self
-  /// contact; bad_argument for a tissue without
-  /// touchable surface and for options that make no sense; TissueClaim's error for a tissue that moves or is cut and
-  /// that a servo uses.
+  /// tissue that stiffens, for a static one whose columns are not all stored, and with self contact for one that can be
+  /// cut; bad_argument for a tissue without touchable surface and for options that make no sense; TissueClaim's error
+  /// for a tissue that moves or is cut and that a servo uses.
   template <class... T>
   requires(sizeof...(T) > 1 && (TissueModel<T> && ...)) explicit TouchingTissues(T&... tissues)
       : TouchingTissues(TissueContactOptions{}, tissues...) {}
@@ -170,9 +169,9 @@ class TouchingTissues {
 
   /// The next step of a tissue that moves, cut, or solution of the contact; for BackgroundWorker.
   BackgroundStep background_work();
-  /// Finds the contact forces for the forces of tools in the last tick, without a step or cut.
-  /// Allocates; per linearisation, of which there are up to eight, O(gaps^3 + changed gaps x vertices), and O(pressing
-  /// gaps^2 x vertices) for the ticks.
+  /// Finds the contact forces for the forces of tools in the last tick, without a step or cut. Allocates; per
+  /// linearisation, of which there are up to eight, O(gaps^3 + changed gaps x vertices), and O(pressing gaps^2 x
+  /// vertices) for the ticks.
   void solve();
   /// Forgets all forces and solves again, after `reset` of a tissue. Not while a tick or a solution runs.
   void reset();
