@@ -146,7 +146,7 @@ TEST_CASE("a reset restores tissues that touch and were cut", "[contact][touchin
   const double whole = press(tissues.group(), 2e-3, Beside{tissues});
   const double slit = press_and_cut(tissues, [&] { cut_twice(stack.above); });
   CHECK(slit < 0.95 * whole);
-  CHECK(stack.above.newest_surface().vertex_count() > stack.above.touchable_nodes().size());
+  CHECK(stack.above.newest_surface().vertex_count() > static_cast<int>(stack.above.touchable_nodes().size()));
   stack.above.reset();
   tissues.reset();
   CHECK(std::abs(press(tissues.group(), 2e-3, Beside{tissues}) - whole) < 1e-3 * whole);
