@@ -31,10 +31,10 @@ class EnergyForces {
   virtual double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept = 0;
   /// Relative rounding error of the energy.
   virtual double rounding() const noexcept = 0;
-  /// Energy and force of the body rotated as a whole, by u [m]: all of it is due to rounding. They are the largest of
-  /// some rotations, since errors of elements may cancel: on a regular grid one has an eighth of the forces of another.
-  /// u and the forces f [N] are of the last. Nodes at `positions` [m].
-  virtual RoundingErrors evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept;
+  /// Energy [J] and forces f [N] of the body rotated as a whole, by u [m]: all of it is due to rounding. The energy is
+  /// the largest of some rotations, since errors of elements may cancel; u and f are of the last. Nodes at `positions`
+  /// [m].
+  virtual double evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept;
 
   /// Whether the forces depend on earlier steps. Then `begin_step` and `end_step` are as in ElasticForces.
   virtual bool has_history() const noexcept { return false; }
@@ -78,20 +78,18 @@ class TangentEnergyForces final : public EnergyForces {
   bool has_history_;
 };
 
-inline RoundingErrors EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u,
-                                                     VectorX& f) noexcept {
+inline double EnergyForces::evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept {
   Matrix3 diagonal, vertical;  // by 60 degrees about (1, 1, 1), by 90 about z
   diagonal << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
   vertical << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
   diagonal /= 3.0;
-  RoundingErrors largest;
+  double largest = 0.0;
   for (const Matrix3& turn :
        {Matrix3(diagonal * diagonal), Matrix3(diagonal * vertical), Matrix3(vertical * diagonal), vertical, diagonal}) {
     for (std::size_t i = 0; i < positions.size(); ++i)
       set_node_vector(u, static_cast<Index>(i), turn * positions[i] - positions[i]);
     DeformationReport report;
-    largest.energy = std::max(largest.energy, std::abs(evaluate(u, f, report)));
-    largest.force = std::max(largest.force, f.norm());
+    largest = std::max(largest, std::abs(evaluate(u, f, report)));
   }
   return largest;
 }

@@ -82,7 +82,7 @@ class SurroundedForces final : public EnergyForces {
   Index size() const noexcept override { return part_->size(); }
   double evaluate(const VectorX& u, VectorX& f, DeformationReport& report) noexcept override;
   double rounding() const noexcept override { return part_->rounding(); }
-  RoundingErrors evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept override {
+  double evaluate_rotated(const std::vector<Vector3>& positions, VectorX& u, VectorX& f) noexcept override {
     return part_->evaluate_rotated(positions, u, f);
   }
 

@@ -147,7 +147,6 @@ class QuasiNewtonMotion final : public TissueMotion {
   ImplicitStep step_;
   VectorX inertia_;          // mass per dof
   VectorX rotated_, noise_;  // displacement by a rotation, and the forces computed there; empty when errors are given
-  double noise_part_ = 1.0;  // size of these forces relative to the largest that rounding caused
   VectorX u_, v_, a_, load_, step_load_;
   VectorX trial_, velocity_, acceleration_, force_, inertial_, damping_, full_, other_;
   VectorX x_, kept_load_, kept_free_, moved_;

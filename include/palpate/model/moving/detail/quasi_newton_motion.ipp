@@ -76,11 +76,8 @@ PALPATE_INLINE QuasiNewtonMotion::QuasiNewtonMotion(DeformableBody body, std::un
     return;
   }
   rotated_ = noise_ = u_;
-  floor_ = forces_->evaluate_rotated(body_.positions, rotated_, noise_);
-  // In an uneven body the largest errors are those of stiff parts, beside which soft ones would not come to
-  // equilibrium.
-  if (is_uneven()) floor_.force = noise_.norm();
-  noise_part_ = floor_.force > 0.0 ? noise_.norm() / floor_.force : 1.0;
+  floor_.energy = forces_->evaluate_rotated(body_.positions, rotated_, noise_);
+  floor_.force = noise_.norm();
   for (Index dof = 0; dof < noise_.size(); ++dof)
     if (body_.conditions.is_constrained(dof)) noise_[dof] = 0.0;
 }
@@ -89,7 +86,7 @@ PALPATE_INLINE void QuasiNewtonMotion::measure_rounding() noexcept {
   if (noise_.size() == 0) return;
   factor_->rotate(rotated_);
   factor_->solve(noise_, other_);
-  floor_.work = std::abs(noise_.dot(other_)) / std::max(1e-4, noise_part_ * noise_part_);
+  floor_.work = std::abs(noise_.dot(other_));
   floor_.displacement = other_.cwiseAbs().maxCoeff();
 }
 
