@@ -9,8 +9,11 @@
 
 #include "contact/servo_session.hpp"
 
+#include "catch.hpp"
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -120,6 +123,31 @@ inline Vector3 sum(std::span<const VertexForce> forces, const Eigen::Isometry3d&
   Vector3 all = Vector3::Zero();
   for (const VertexForce& f : forces) all += f.force.in_world(pose);
   return all;
+}
+
+struct SolutionCounts {
+  int all = 0, flagged = 0;
+};
+
+/// Presses and drags a sphere of 4 mm on bodies of this radius, one on the other; finds the contact every 10 ticks. No
+/// body enters another one by 3 % of a facet without a flag. `between` is called after every tick.
+template <class Between>
+void press_around(TouchingTissues& tissues, double r, Between between, SolutionCounts& counts) {
+  HapticServo servo(tissues.group(), SphereTool{4e-3}, open_options());
+  ToolState state;
+  for (int t = 0; t < 400; ++t) {
+    state.time += 1e-3;
+    const double a = 2.0 * 3.14159265358979 * t / 400.0;
+    state.position = {2e-3 * std::sin(2.0 * a), 2e-3 * std::sin(a), 3.0 * r + 5e-3 - 4e-3 * (1.0 - std::cos(a))};
+    CHECK(servo.tick(state).force().allFinite());
+    between(t);
+    if (t % 10 != 9) continue;
+    tissues.solve();
+    ++counts.all;
+    const Status status = tissues.report().status;
+    if (!status.has(StatusFlag::lost_contact)) CHECK(deepest(tissues) < 0.03);
+    counts.flagged += status.has(StatusFlag::lost_contact) || status.has(StatusFlag::solver_not_converged);
+  }
 }
 
 }  // namespace touching_test

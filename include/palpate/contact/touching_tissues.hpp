@@ -86,24 +86,26 @@ class TouchingTissue {
   /// Of vertices whose compliance is ready for a tick; that of others is evaluated there.
   static constexpr std::size_t most_near = 512, most_pressed = 192;
 
-  TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& all, int capacity);
+  TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& owner, int capacity);
 
   using Block = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>>;
   static Block restraint(const View& view, int v) noexcept {
     return {view.restraint.data() + 3 * static_cast<std::ptrdiff_t>(view.rows) * v, view.rows, 3};
   }
   void take_view() noexcept;
-  /// Of a surface with other triangles. Allocates.
+  /// Makes the view one of the newest triangles. Allocates.
   void renew(View& view, std::uint64_t number);
   static Matrix3 restrained(const View& view, int i, int j, const Matrix3& c) noexcept;
   /// For the thread that solves: the surface as tools do not press it, with the rows closed as they are. With the
   /// forces of the last tick, its compliance gives the surface that was found.
   void publish(detail::InterfaceProblem& problem, std::size_t body, Status status);
-  void show_forces(std::span<const VertexForce> of_others, std::span<const VertexForce> of_tools);
+  /// Moves the surface to where the tissue is without the tools of ticks.
+  void move_surface(View& view, const VectorX& pushed, detail::InterfaceProblem& problem, std::size_t body);
+  void set_forces_for_blades(std::span<const VertexForce> of_others, std::span<const VertexForce> of_tools);
   /// Sum of Z f over forces.
   static VectorX pushed_by(const View& view, std::span<const VertexForce> forces);
 
-  TouchingTissues& all_;
+  TouchingTissues& owner_;
   detail::InterfaceTissue tissue_;
   detail::ClaimedTissue claimed_;
   double largest_bound_ = 0.0;
@@ -122,9 +124,9 @@ class TouchingTissue {
   std::uint64_t revision_ = 0, published_ = 0;
   std::atomic<std::uint64_t> updates_{0};
   std::atomic<bool> slow_{false}, failed_{false};
-  std::atomic<bool> is_behind_{false};   // a cut is made, and ticks do not have it
-  std::atomic<std::uint64_t> taken_{0};  // by ticks: number of the last surface
-  int postponed_ = 0;                    // how often the next cut was
+  std::atomic<bool> is_behind_{false};   // a cut is being made, or made and not published
+  std::atomic<std::uint64_t> taken_{0};  // number of the surface that ticks have, of those published
+  int postponed_ = 0;                    // how many times the next cut has been
   Status ticked_;
   TissueClaim claim_;
 };
@@ -198,7 +200,7 @@ class TouchingTissues {
   friend class TouchingTissue;
   void take_forces();
   bool work(std::size_t k);
-  bool postpones_cut(TouchingTissue& tissue) const noexcept;
+  static bool postpone_cut(TouchingTissue& tissue) noexcept;
   void follow_ticks(std::size_t k);
   void find_forces();
   TouchingTissues(std::vector<detail::InterfaceTissue> tissues, const TissueContactOptions& options);

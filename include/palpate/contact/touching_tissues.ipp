@@ -15,9 +15,9 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<TouchingTissue>);
 
-PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& all_tissues,
+PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& owner,
                                               int capacity)
-    : all_(all_tissues), tissue_(tissue), claimed_(tissue_.view().claim()) {
+    : owner_(owner), tissue_(tissue), claimed_(tissue_.view().claim()) {
   std::vector<int> all(static_cast<std::size_t>(tissue_.surface().vertex_count()));
   std::iota(all.begin(), all.end(), 0);
   if (!tissue_.can_touch_others())
@@ -99,8 +99,9 @@ PALPATE_INLINE Status TouchingTissue::begin_tick() noexcept {
   Status status = tissue_.order_status();
   const bool is_behind = is_behind_.load(std::memory_order_acquire);
   if (is_behind) status.set(StatusFlag::degraded_model);
-  const bool has_old_surface = is_behind && !tissue_.moves();  // the compliance may already be that after the cut
-  if (!has_old_surface && views_.update()) take_view();
+  // While a cut is made, the newest compliance may be that after it, and the surface that before.
+  const bool may_differ = is_behind && !tissue_.moves();
+  if (!may_differ && views_.update()) take_view();
   status |= of_tissue_ | ticked_ | views_.front().status;
   if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
   if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
@@ -147,21 +148,21 @@ PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces
   tissue_.view().end_tick(forces, points);
 }
 
-/// A tissue that is cut may then have another surface.
+/// The contact points of a tissue that can be cut depend on the tools, so that its surface is made again.
 PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
-  const std::scoped_lock lock(all_.changes_);
+  const std::scoped_lock lock(owner_.changes_);
   tissue_.view().prepare_tools(radii, parameters);
   end_tick({});  // the tools of a servo before
-  if (can_be_cut()) all_.find_forces();
+  if (can_be_cut()) owner_.find_forces();
   begin_tick();
   end_tick({});
   exchanged_ = number_;
 }
 
-/// For where blades cut.
-PALPATE_INLINE void TouchingTissue::show_forces(std::span<const VertexForce> of_others,
-                                                std::span<const VertexForce> of_tools) {
-  if (!tissue_.changes()) return;
+/// Blades cut a tissue that does not move as these forces displace it; one that moves knows its displacement.
+PALPATE_INLINE void TouchingTissue::set_forces_for_blades(std::span<const VertexForce> of_others,
+                                                          std::span<const VertexForce> of_tools) {
+  if (!can_be_cut() || tissue_.moves()) return;
   std::vector<VertexForce> all(of_others.begin(), of_others.end());
   all.insert(all.end(), of_tools.begin(), of_tools.end());
   tissue_.set_contact_forces(all);
@@ -173,30 +174,34 @@ PALPATE_INLINE VectorX TouchingTissue::pushed_by(const View& view, std::span<con
   return pushed;
 }
 
+PALPATE_INLINE void TouchingTissue::move_surface(View& view, const VectorX& pushed, detail::InterfaceProblem& problem,
+                                                 std::size_t body) {
+  problem.displacement(body, moved_);
+  std::vector<Vector3> free(tissue_.surface().positions()), pressed(free);
+  for (std::size_t v = 0; v < free.size(); ++v) {
+    const Vector3 moved(moved_[3 * v], moved_[3 * v + 1], moved_[3 * v + 2]);
+    pressed[v] = problem.base(body)[v] + moved;
+    free[v] += moved;
+    if (view.rows > 0) free[v] += restraint(view, static_cast<int>(v)).transpose() * pushed;
+  }
+  view.surface.move_to(free, ++published_);
+  view.surface.expect(pressed, given_.front().all());
+}
+
 PALPATE_INLINE void TouchingTissue::publish(detail::InterfaceProblem& problem, std::size_t body, Status status) {
   View& view = views_.back();
   if (view.number != problem.surface_number(body)) renew(view, problem.surface_number(body));
   const Forces& given = given_.front();
   view.rows = problem.pressing();
   problem.restraint(body, view.restraint);
-  problem.displacement(body, moved_);
   VectorX pushed = pushed_by(view, given.all());
-  std::vector<Vector3> free(tissue_.surface().positions()), pressed(free);
-  for (std::size_t v = 0; v < free.size(); ++v) {
-    const int i = static_cast<int>(v);
-    const Vector3 moved(moved_[3 * v], moved_[3 * v + 1], moved_[3 * v + 2]);
-    pressed[v] = problem.base(body)[v] + moved;
-    free[v] += moved;
-    if (view.rows > 0) free[v] += restraint(view, i).transpose() * pushed;
-  }
+  move_surface(view, pushed, problem, body);
   view.near_compliance.set(given.near_vertices.all(), given.pressed.all(),
                            [&](int i, int j) { return restrained(view, i, j, tissue_.compliance(i, j)); });
-  view.surface.move_to(free, ++published_);
-  view.surface.expect(pressed, given.all());
   view.surface.set_force_accuracy(view.rows > 0 ? nullptr : accuracy_);  // measured without other tissues
   view.status = status;
   problem.forces(body, drawn_.back());
-  if (!tissue_.moves()) show_forces(drawn_.back(), given.all());
+  set_forces_for_blades(drawn_.back(), given.all());
   pushed_.swap(pushed);
   newest_ = &view;
   views_.publish();
@@ -294,7 +299,7 @@ PALPATE_INLINE void TouchingTissues::take_forces() {
   }
 }
 
-/// The forces between tissues that belong to those of the last tick.
+/// Gives a tissue that moves the forces of the others that follow from the last tick.
 PALPATE_INLINE void TouchingTissues::follow_ticks(std::size_t k) {
   take_forces();
   VectorX pushed = VectorX::Zero(problem_->pressing());
@@ -308,22 +313,23 @@ PALPATE_INLINE void TouchingTissues::follow_ticks(std::size_t k) {
   tissue.set_contact_forces(forces_);
 }
 
-/// Until ticks have the surface of the last cut: they take it together with the compliance, which is that of the newest
-/// one. Not for long: there may be no ticks.
-PALPATE_INLINE bool TouchingTissues::postpones_cut(TouchingTissue& t) const noexcept {
+/// Postpones a cut until ticks have the newest surface: with it they take the newest compliance, which must not be that
+/// of the next cut. At most ten times, since there may be no ticks.
+PALPATE_INLINE bool TouchingTissues::postpone_cut(TouchingTissue& t) noexcept {
   constexpr int most = 10;
   const bool is_taken = t.taken_.load(std::memory_order_acquire) == t.published_;
   t.postponed_ = is_taken || t.postponed_ == most ? 0 : t.postponed_ + 1;
   return t.postponed_ > 0;
 }
 
-/// Whether the contact must be solved again. Cuts that follow each other wait, so that one solution is for several.
+/// Returns whether the contact must be solved again. A cut waits for the next interval after the last one, so that one
+/// solution is for several cuts.
 PALPATE_INLINE bool TouchingTissues::work(std::size_t k) {
   TouchingTissue& t = *tissues_[k];
   constexpr double wait = 2e-4;  // [s]
   if (t.tissue_.moves()) follow_ticks(k);
   if (t.tissue_.has_orders()) {
-    if (!t.tissue_.moves() && postpones_cut(t)) {
+    if (!t.tissue_.moves() && postpone_cut(t)) {
       next_work_[k] = time_ + wait;
       return false;
     }
