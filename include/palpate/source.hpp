@@ -47,6 +47,7 @@
 #include <palpate/core/setup_error.ipp>
 #include <palpate/cut/detail/cut_motion.ipp>
 #include <palpate/cut/detail/cut_view.ipp>
+#include <palpate/cut/moving_pieces.ipp>
 #include <palpate/device/mock_device.ipp>
 #include <palpate/device/placement.ipp>
 #include <palpate/device/recorder.ipp>

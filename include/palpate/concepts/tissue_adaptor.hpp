@@ -75,6 +75,8 @@ class TissueAdaptor {
   { return tissue().refuses_suspicious_units(); }
   bool can_be_cut() const noexcept requires requires(const Tissue& t) { t.can_be_cut(); }
   { return tissue().can_be_cut(); }
+  bool gains_pieces() const noexcept requires requires(const Tissue& t) { t.gains_pieces(); }
+  { return tissue().gains_pieces(); }
 
  protected:
   Tissue& tissue() noexcept { return *tissue_; }

@@ -208,8 +208,9 @@ constexpr void explain_tissue() noexcept {
 /// `begin_tick` then reports stalled_tissue.
 /// A tissue may also have `claim()`, if only one servo at a time can use it (TissueClaim), `notes() const`, sentences
 /// for the report of a session as std::vector<std::string>, `refuses_suspicious_units() const`: whether tools that look
-/// as if they were given in millimetres are refused, and `can_be_cut() const noexcept`, where only some objects of the
-/// type with `try_cut` can.
+/// as if they were given in millimetres are refused, `can_be_cut() const noexcept`, where only some objects of the
+/// type with `try_cut` can, and `gains_pieces() const noexcept`: whether the surface may be empty at first, and
+/// `exchange_contacts` makes it larger.
 /// All hooks but prepare_tools and background_work are noexcept, allocate nothing and take bounded time. Between two
 /// calls of `begin_tick` the surface stays at the same place in memory.
 template <class T>

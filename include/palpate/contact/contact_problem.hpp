@@ -134,6 +134,8 @@ class ContactProblem {
   std::array<double, maximum_tools> vertices_of_print(const ContactSurface& surface) const noexcept;
   void start_levels(const TissueView& tissue, Tools tools) noexcept;
   void prefetch(const TissueView& tissue) noexcept;
+  Status balance(const TissueView& tissue, Tools tools) noexcept;
+  void add_rows(const TissueView& tissue) noexcept;
   void solve_linearised(const TissueView& tissue, Tools tools, int iteration, Status& status) noexcept;
   void correct_normals(const TissueView& tissue, Tools tools, Status& status) noexcept;
   void gather_pressing(const TissueView& tissue, Tools tools) noexcept;
@@ -179,6 +181,7 @@ class ContactProblem {
   std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
   bool late_ = false;                             // a column of the compliance was missing in the last `solve`
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
+  bool is_cut_ = false;                           // since the last tick
   std::array<bool, maximum_tools> is_near_{};     // tools with contact points near them
   double rest_of_change_ = 0.0;                   // relative change of force that is left
   double feedback_ = 0.0, most_feedback_ = largest_feedback;

@@ -184,7 +184,7 @@ PALPATE_INLINE Status ContactProblem::solve(const TissueView& tissue, std::span<
 PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<ContactTool> tools) noexcept {
   floor_ = tissue.compliance_floor();
   late_ = false;
-  const Status status = tissue.require_columns({});  // before the revision is read
+  Status status = tissue.require_columns({});  // before the revision is read
   note_forces_of_lifted(tools);
   set_outward(tissue.contact_surface(), tools);
   rows_.begin_tick(tissue.compliance_revision());
@@ -197,6 +197,7 @@ PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<
   is_near_ = are_near(tools);
   share_rows(tools, is_near_);
   set_levels(tools);
+  if (std::exchange(is_cut_, false)) status |= balance(tissue, tools);
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
   return status;
@@ -242,7 +243,9 @@ PALPATE_INLINE Status ContactProblem::end(const TissueView& tissue, std::span<Co
   for (std::size_t t = 0; t < maximum_tools; ++t) grasped[t] = static_cast<int>(grasps_[t].rows().size());
   levels_.end_tick(rows_.count_pressing(), rows_.points_of_print(), grasped,
                    vertices_of_print(tissue.contact_surface()));
-  if (levels_.deepest() > 0.0) status.set(StatusFlag::degraded_model);
+  constexpr double allowed_in_rigid = 0.01;  // rows at a few points keep all of a facet out that cannot bend
+  if (missing_depth() > (tissue.contact_surface().is_rigid() ? allowed_in_rigid : 0.0))
+    status.set(StatusFlag::degraded_model);
   if (rest_of_change_ > unconverged_change || !rows_.has_converged() ||
       of_lifted_ > parameters_.force_tolerance * std::max(most_of_lifted_, rows_.largest_force_scale(tools)))
     status.set(StatusFlag::solver_not_converged);
@@ -575,8 +578,9 @@ PALPATE_INLINE ForceError ContactProblem::force_error(const TissueView& tissue, 
     measured = coarse < infinity;
     coarse_[t] = measured && coarse > flagged_error;
   }
-  coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured) ||
-               (!measured && bends_coarse_elements(surface, t, tool));
+  if (!surface.is_rigid())
+    coarse_[t] = coarse_[t] || grasps_[t].is_coarse() || presses_coarse_facets(surface, t, tool, measured) ||
+                 (!measured && bends_coarse_elements(surface, t, tool));
   error.parts.late = late_ ? infinity : 0.0;
   error.parts.merged = scale * (missing_depth() / (1.0 - missing_depth()) + error_of_points(t));
   error.bound = error.parts.sum();
@@ -606,6 +610,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   levels_.change_points();
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
+  is_cut_ = true;
 }
 
 PALPATE_INLINE void ContactProblem::reset() noexcept {
@@ -619,6 +624,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
+  is_cut_ = false;
   feedback_ = of_lifted_ = most_of_lifted_ = 0.0;
   most_feedback_ = largest_feedback;
 }
@@ -704,13 +710,32 @@ PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept 
 /// as they are there while rows are added until no point penetrates. The distance to a point is a convex function, so a
 /// step of any length to the solution keeps all points out of the sphere. Updates the forces of points, vertices and
 /// tools. The caller guarantees that rounds are left: the rows are those of the forces.
-PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
-                                                     Status& status) noexcept {
-  gather_pressing(tissue, tools);
-  predict_normals(iteration);
+/// After a cut: the forces with which the points that pressed stay where they are. The forces before it could move a
+/// part that hangs on less of the tissue so far away that the tools would lose it.
+PALPATE_INLINE Status ContactProblem::balance(const TissueView& tissue, Tools tools) noexcept {
+  pressing_count_ = 0;
+  pressing_of_.fill(0);
+  for (detail::Candidate& c : candidates_.items()) note_pressing(c);
+  for (int i = 0; i < pressing_count_; ++i) {
+    detail::Candidate& c = *pressing_[at(i)];
+    set_area(c);
+    candidates_.place(c, c.point, tools[at(c.tool)]);
+  }
+  add_rows(tissue);
+  if (rows_.count() == 0) return {};
+  const Status status = rows_.require_columns(tissue);
+  rows_.build(tissue, candidates_, tools, floor_, 0);
+  rows_.solve(0);
+  if (rows_.has_friction()) rows_.slide();
+  rows_.apply(tissue, candidates_, tools, displacement_);
+  rows_.place_points();
+  return status;
+}
+
+PALPATE_INLINE void ContactProblem::add_rows(const TissueView& tissue) noexcept {
   rows_.clear();
-  for (std::size_t t = 0; t < tools.size(); ++t)
-    for (detail::Candidate& c : grasps_[t].rows())
+  for (Grasp& g : grasps_)
+    for (detail::Candidate& c : g.rows())
       if (rows_.count() < rows_.capacity()) rows_.add(tissue, candidates_, c);
   for (int i = 0; i < pressing_count_; ++i) {
     detail::Candidate& c = *pressing_[at(i)];
@@ -719,6 +744,13 @@ PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, T
     else
       c.lift();  // only rows carry forces
   }
+}
+
+PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
+                                                     Status& status) noexcept {
+  gather_pressing(tissue, tools);
+  predict_normals(iteration);
+  add_rows(tissue);
   if (rows_.count() == 0) rows_.apply(tissue, candidates_, tools, displacement_);
   int built = 0;
   for (;; built = rows_.count()) {

@@ -98,6 +98,9 @@ class ContactSurface {
   /// vertices would then invert elements.
   void set_large_strain(bool large) noexcept { large_strain_ = large; }
   bool has_large_strain() const noexcept { return large_strain_; }
+  /// Whether the facets cannot bend, so that long ones are not coarse.
+  void set_rigid(bool rigid) noexcept { rigid_ = rigid; }
+  bool is_rigid() const noexcept { return rigid_; }
   /// Sets the errors that were measured on this surface; null: none were.
   void set_force_accuracy(std::shared_ptr<const ForceAccuracy> accuracy) noexcept { accuracy_ = std::move(accuracy); }
   /// Sets what is known about the other errors of a linear model.
@@ -190,7 +193,7 @@ class ContactSurface {
   ExpectedSurface expected_;
   std::vector<ContactSurface> body_;  // with the shell; none or one
   Unloaded unloaded_;
-  bool large_strain_ = false;
+  bool large_strain_ = false, rigid_ = false;
   std::vector<ContactMaterial> materials_;  // per triangle, or empty
   std::shared_ptr<const SubfacetCompliance> subfacet_;
   std::shared_ptr<const ForceAccuracy> accuracy_;

@@ -40,6 +40,7 @@ struct TissueFunctions {
   std::vector<std::string> (*notes)(const void*) = nullptr;
   bool (*refuses_units)(const void*) noexcept = nullptr;
   bool (*can_be_cut)(const void*) noexcept = nullptr;  ///< null: wherever there is try_cut
+  bool (*gains_pieces)(const void*) noexcept = nullptr;
   /// With try_cut only: code of blades is compiled for a tissue that can be cut.
   std::unique_ptr<ServoBlade> (*make_blade)(const BladeTool&, double stiffness) = nullptr;
 };
@@ -141,6 +142,8 @@ struct TissueCalls {
     }
     if constexpr (requires(const T& t) { t.can_be_cut(); })
       f.can_be_cut = [](const void* t) noexcept -> bool { return of(t).can_be_cut(); };
+    if constexpr (requires(const T& t) { t.gains_pieces(); })
+      f.gains_pieces = [](const void* t) noexcept -> bool { return of(t).gains_pieces(); };
     if constexpr (calls<decltype(hooked().half_space_map(0))>)
       f.half_space_map = [](const void* t, int v, Matrix3& r) noexcept { r = of(t).half_space_map(v); };
     if constexpr (requires(T & t) { t.claim(); })
@@ -247,6 +250,10 @@ class TissueView {
   bool has_contact_materials() const noexcept { return functions_->has_contact_materials; }
   bool can_be_cut() const noexcept {
     return functions_->try_cut != nullptr && (functions_->can_be_cut == nullptr || functions_->can_be_cut(tissue_));
+  }
+  /// Whether the surface may be empty at first.
+  bool gains_pieces() const noexcept {
+    return functions_->gains_pieces != nullptr && functions_->gains_pieces(tissue_);
   }
   /// Requests a cut along the surface swept by a blade, world frame; false when the tissue cannot be cut, or not now.
   bool try_cut(const BladeSweep& sweep) const noexcept { return can_be_cut() && functions_->try_cut(tissue_, sweep); }

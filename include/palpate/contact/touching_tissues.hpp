@@ -57,6 +57,7 @@ class TouchingTissue {
   void prepare_tools(const ToolRadii& radii, const ContactParameters& parameters);
   bool try_cut(const BladeSweep& sweep) noexcept { return tissue_.view().try_cut(sweep); }
   bool can_be_cut() const noexcept { return tissue_.view().can_be_cut(); }
+  bool gains_pieces() const noexcept { return tissue_.has_parts(); }
   Matrix3 half_space_map(int v) const noexcept { return tissue_.view().half_space_map(v); }
   NoHook background_work() noexcept { return {}; }
   NoHook report_slow(bool) noexcept { return {}; }
@@ -85,6 +86,8 @@ class TouchingTissue {
   };
   /// Of vertices whose compliance is ready for a tick; that of others is evaluated there.
   static constexpr std::size_t most_near = 512, most_pressed = 192;
+  /// Forces of a tick on a tissue that gains vertices.
+  static constexpr std::size_t most_on_parts = 3 * std::size_t{ContactProblem::maximum_capacity};
 
   TouchingTissue(const detail::InterfaceTissue& tissue, TouchingTissues& owner, int capacity);
 
@@ -133,7 +136,7 @@ class TouchingTissue {
 
 /// Contact between deformable tissues, solved in a background thread; ticks feel each tissue with its neighbours behind
 /// it. For static tissues whose compliance columns are all stored, and for tissues that move or are cut, whose steps
-/// and cuts this object makes. Pieces that are cut off touch nothing.
+/// and cuts this object makes. Pieces that are cut off touch nothing, except where MovingPieces takes them.
 ///
 /// Gaps are those of mortar elements on the deformed surfaces, which pass a uniform pressure exactly between any
 /// meshes. The forces between two tissues are in equilibrium to rounding. In every solution the forces of the tools in

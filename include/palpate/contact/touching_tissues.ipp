@@ -24,7 +24,7 @@ PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tis
     raise(SetupErrorKind::unsupported,
           "contact with other tissues for one that stiffens, or for a class around one that moves or is cut",
           "Use Condensed<...>, Implicit<...> or Cuttable<...> of these for a tissue that touches others");
-  if (tissue_.surface().triangles().empty())
+  if (tissue_.surface().triangles().empty() && !tissue_.has_parts())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
   if (!tissue_.changes() && !tissue_.view().require_columns(all).ok())
@@ -38,8 +38,9 @@ PALPATE_INLINE TouchingTissue::TouchingTissue(const detail::InterfaceTissue& tis
   near_ = {all.size(), most_near};
   pressed_ = {all.size(), most_pressed};
   sum_.resize(capacity);
+  const std::size_t most_forces = std::max(all.size(), tissue_.has_parts() ? most_on_parts : 0);
   given_.fill(
-      {std::vector<VertexForce>(all.size()), 0, detail::VertexCopy(most_near), detail::VertexCopy(most_pressed)});
+      {std::vector<VertexForce>(most_forces), 0, detail::VertexCopy(most_near), detail::VertexCopy(most_pressed)});
 }
 
 PALPATE_INLINE void TouchingTissue::renew(View& view, std::uint64_t number) {
@@ -153,7 +154,7 @@ PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const 
   const std::scoped_lock lock(owner_.changes_);
   tissue_.view().prepare_tools(radii, parameters);
   end_tick({});  // the tools of a servo before
-  if (can_be_cut()) owner_.find_forces();
+  if (can_be_cut() || tissue_.surface_number() != number_) owner_.find_forces();
   begin_tick();
   end_tick({});
   exchanged_ = number_;
@@ -275,8 +276,13 @@ PALPATE_INLINE std::span<const VertexForce> TouchingTissues::contact_forces(std:
 PALPATE_INLINE BackgroundStep TouchingTissues::background_work() {
   const std::scoped_lock lock(changes_);
   bool changed = false;
-  for (std::size_t k = 0; k < tissues_.size(); ++k)
-    if (next_work_[k] <= time_) changed = work(k) || changed;
+  for (std::size_t k = 0; k < tissues_.size(); ++k) {
+    if (next_work_[k] > time_) continue;
+    const std::uint64_t before = tissues_[k]->tissue_.surface_number();
+    changed = work(k) || changed;
+    if (tissues_[k]->tissue_.surface_number() == before) continue;
+    for (const auto& t : tissues_) t->tissue_.take_pieces(tissues_[k]->tissue_);
+  }
   if (changed || next_solution_ <= time_) {
     find_forces();
     next_solution_ = time_ + options_.interval;
@@ -358,7 +364,8 @@ PALPATE_INLINE void TouchingTissues::find_forces() {
     report_.pressing += r.force > 0.0;
     report_.force += r.force;
   }
-  for (std::size_t k = 0; k < tissues_.size(); ++k) tissues_[k]->publish(*problem_, k, status);
+  // A tick takes the surface of a tissue before that of its pieces: these are then published first.
+  for (std::size_t k = tissues_.size(); k-- > 0;) tissues_[k]->publish(*problem_, k, status);
 }
 
 }}  // namespace palpate

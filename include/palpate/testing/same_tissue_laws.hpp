@@ -77,7 +77,8 @@ Violations same_tissue_laws(T& tissue, Same& same, const ToolList& tools, std::s
   expect_true(v, "same scales", scales);
   expect_true(v, "same hooks",
               view.announces_changes() == other.announces_changes() && view.has_updates() == other.has_updates() &&
-                  view.can_be_cut() == other.can_be_cut() && HasBackgroundWork<T> == HasBackgroundWork<Same>);
+                  view.can_be_cut() == other.can_be_cut() && view.gains_pieces() == other.gains_pieces() &&
+                  HasBackgroundWork<T> == HasBackgroundWork<Same>);
   const auto expected = detail::run_session(tissue, tools, path, options);
   const auto got = detail::run_session(same, tools, path, options);
   const auto differs = [&](auto equal) {

@@ -15,7 +15,8 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Finds the forces between bodies whose compliance is known, so that none enters another one: Signorini's conditions
 /// on mortar gaps, and on vertices and edges that would enter another body where no mean gap keeps them out. W = sum of
-/// J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). The normals and weights are those of
+/// J C J^T over the bodies of a row (Duriez, Dubois, Kheddar and Andriot 2006). Rigid parts that move far at once are
+/// kept out along their path: the first linearisation is at the last solution. The normals and weights are those of
 /// the deformed surfaces: the problem is solved again until these stay. Rows that hardly change keep their columns J C.
 /// Allocates; for a background thread.
 class InterfaceProblem {
@@ -78,8 +79,10 @@ class InterfaceProblem {
     std::vector<Triangle> triangles{};
     std::vector<std::array<int, 2>> edges{};
     std::vector<double> depths{};
+    std::vector<Index> parts{};
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
+    double path = 0.0;                         // of parts, from the last solution without forces of rows [m]
     std::uint64_t revision = 0, number = 0;    // of the surface; of its triangles
     std::vector<double>
         closed_gap{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
@@ -90,6 +93,7 @@ class InterfaceProblem {
   static Body make_body(const InterfaceTissue& tissue);
   InterfaceSurface surface(std::size_t body) const noexcept;
   Vector3 direction(const InterfaceRow& row, int body) const noexcept;
+  bool find_paths() noexcept;
   void mark_stale(std::size_t body) noexcept;
   void renew(std::size_t body);
   double move_bodies();

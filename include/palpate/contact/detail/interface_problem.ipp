@@ -24,6 +24,7 @@ PALPATE_INLINE InterfaceProblem::Body InterfaceProblem::make_body(const Interfac
   const ContactSurface& surface = tissue.surface();
   const ContactSurface& boundary = surface.boundary();
   body.triangles = surface.triangles();
+  body.parts.assign(tissue.parts().begin(), tissue.parts().end());
   body.number = tissue.surface_number();
   body.base = body.now = surface.positions();
   body.bvh = surface.bvh();
@@ -80,7 +81,7 @@ PALPATE_INLINE void InterfaceProblem::mark_stale(std::size_t k) noexcept {
 
 PALPATE_INLINE InterfaceSurface InterfaceProblem::surface(std::size_t k) const noexcept {
   const Body& body = bodies_[k];
-  return {static_cast<int>(k), body.triangles, body.now, &body.bvh, body.depths};
+  return {static_cast<int>(k), body.triangles, body.now, &body.bvh, body.depths, body.parts};
 }
 
 /// The normal of a row in the frame of a body.
@@ -108,15 +109,36 @@ PALPATE_INLINE void InterfaceProblem::forces(std::size_t k, std::vector<VertexFo
     if (sum[v].squaredNorm() > 0.0) forces.push_back({static_cast<int>(v), ModelVector(sum[v])});
 }
 
-/// Returns by how much a vertex moves at most, relative to what rows displace one.
+/// Whether parts move so far from the last solution that they could pass through another body.
+PALPATE_INLINE bool InterfaceProblem::find_paths() noexcept {
+  constexpr double considerable = 0.25;  // of a mean facet
+  bool found = false;
+  for (Body& body : bodies_) {
+    body.path = 0.0;
+    if (body.parts.empty()) continue;
+    for (std::size_t v = 0; v < body.base.size(); ++v)
+      body.path = std::max(body.path, (body.pose * body.base[v] - body.now[v]).norm());
+    if (body.path < considerable * body.facet_length)
+      body.path = 0.0;
+    else
+      found = true;
+  }
+  return found;
+}
+
+/// Returns by how much a vertex moves at most, relative to what rows displace one. Of parts, which rows displace by
+/// what a step moves them, a thousandth of a facet is nothing.
 PALPATE_INLINE double InterfaceProblem::move_bodies() {
+  constexpr double nothing = 1e-3;  // of a mean facet
   double change = 0.0, largest = 0.0;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     Body& body = bodies_[k];
     displacement(k, moved_);
+    const double least = body.parts.empty() ? 0.0 : nothing * body.facet_length;
     for (std::size_t v = 0; v < body.base.size(); ++v) {
       const Vector3 u(moved_[3 * v], moved_[3 * v + 1], moved_[3 * v + 2]), now = body.pose * (body.base[v] + u);
-      change = std::max(change, (now - body.now[v]).squaredNorm());
+      const double moved = (now - body.now[v]).squaredNorm();
+      if (moved > least * least) change = std::max(change, moved);
       largest = std::max(largest, u.squaredNorm());
       body.now[v] = now;
     }
@@ -129,7 +151,7 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
 PALPATE_INLINE bool InterfaceProblem::keeps_shape() const noexcept {
   for (const Body& body : bodies_) {
     if (body.triangles.empty()) continue;  // all of it has been cut away
-    const double size = body.tissue.surface().bvh().bounds().size().norm();
+    const double size = body.tissue.surface().bvh().bounds().size().norm() + body.path;
     for (std::size_t v = 0; v < body.now.size(); ++v)
       if (!((body.now[v] - body.pose * body.base[v]).norm() <= size)) return false;
   }
@@ -153,10 +175,12 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
   geometry_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     for (std::size_t l = k; l < bodies_.size(); ++l) {
-      if ((k == l && !self_contact_) || bodies_[k].triangles.empty() || bodies_[l].triangles.empty()) continue;
+      const bool touches = k != l || self_contact_ || !bodies_[k].parts.empty();
+      if (!touches || bodies_[k].triangles.empty() || bodies_[l].triangles.empty()) continue;
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
-      geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length));
+      const double paths = bodies_[k].path + bodies_[l].path;
+      geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length) + paths);
     }
   note_closed(geometry_.rows());
   for (std::size_t k = 0; k < bodies_.size(); ++k)
@@ -276,7 +300,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   bool solved = true;
   if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
   find_responses();  // of rows at surfaces that have changed
-  move_bodies();
+  if (!find_paths()) move_bodies();
   for (int i = 0; i < most_linearisations && change > tolerance; ++i) {
     status = {};
     find_rows();
@@ -290,6 +314,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
       solved = false;
       move_bodies();
     }
+    for (Body& body : bodies_) body.path = 0.0;
   }
   if (!solved || change > flagged) status.set(StatusFlag::solver_not_converged);
   if (has_entered()) status.set(StatusFlag::lost_contact);
@@ -299,7 +324,8 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   return status;
 }
 
-/// Whether two surfaces that press each other do so with a few rows only.
+/// Whether two surfaces that press each other do so with a few rows only. The force on rigid parts does not depend on
+/// their number.
 PALPATE_INLINE bool InterfaceProblem::is_coarse() const noexcept {
   constexpr int few = 7;
   constexpr double considerable = 0.05;  // of all forces
@@ -307,6 +333,7 @@ PALPATE_INLINE bool InterfaceProblem::is_coarse() const noexcept {
   for (const Row& r : rows_) all += r.force;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     for (std::size_t l = k; l < bodies_.size(); ++l) {
+      if (!bodies_[k].parts.empty() || !bodies_[l].parts.empty()) continue;
       int pressing = 0;
       double force = 0.0;
       for (const Row& r : rows_)

@@ -211,7 +211,8 @@ PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
   return found;
 }
 
-/// Whether tissues overlap, before they move each other, by a tenth of the thickness of the thinner one.
+/// Whether tissues overlap, before they move each other, by a tenth of the thickness of the thinner one. Rigid parts
+/// move out of the way.
 PALPATE_INLINE bool InterfaceProblem::overlap_at_rest() {
   constexpr double large = 0.2;  // of a depth, half of the thickness
   for (Body& body : bodies_) {
@@ -221,7 +222,8 @@ PALPATE_INLINE bool InterfaceProblem::overlap_at_rest() {
   }
   for (const Body& own : bodies_)
     for (const Body& other : bodies_)
-      for (int v = 0; &own != &other && v < static_cast<int>(own.now.size()); ++v) {
+      for (int v = 0;
+           &own != &other && own.parts.empty() && other.parts.empty() && v < static_cast<int>(own.now.size()); ++v) {
         const NearestFacet b = find_opposite(own, other, v);
         if (b.facet < 0) continue;
         double depth = other.depths[at(b.facet)];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <palpate/contact/detail/bvh.hpp>
+#include <palpate/core/types.hpp>
 
 #include <array>
 #include <compare>
@@ -18,6 +19,7 @@ struct InterfaceSurface {
   std::span<const Vector3> positions{};
   const Bvh* bvh = nullptr;          ///< of the positions
   std::span<const double> depths{};  ///< per triangle: how deep another surface may have entered there [m]
+  std::span<const Index> parts{};    ///< per triangle: parts that touch each other but not themselves; empty: one body
 };
 
 /// One vertex of one body in a row. Its displacement u changes the gap by weight * normal . u, and a force of the row
@@ -56,7 +58,7 @@ class InterfaceRows {
  public:
   /// Adds the rows at the vertices of `first` whose facets are not farther than `reach` [m] from those of `second`, nor
   /// deeper in it than both allow. For contact of a surface with itself both are the same surface: of two facets the
-  /// one with the lower number has the rows, and facets that share a vertex do not touch. Allocates.
+  /// one with the lower number has the rows, and facets that share a vertex or are of one part do not touch. Allocates.
   void add(const InterfaceSurface& first, const InterfaceSurface& second, double reach);
   void clear() noexcept { rows_.clear(); }
   std::vector<InterfaceRow>& rows() noexcept { return rows_; }

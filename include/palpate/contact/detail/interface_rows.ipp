@@ -86,6 +86,9 @@ PALPATE_INLINE void InterfaceRows::find_overlaps(const InterfaceSurface& first, 
     if (first.body == second.body) {
       if (other <= t || interface_geometry::share_vertex(own, second.triangles[static_cast<std::size_t>(other)]))
         return 1.0;
+      if (!first.parts.empty() &&
+          first.parts[static_cast<std::size_t>(t)] == first.parts[static_cast<std::size_t>(other)])
+        return 1.0;
     }
     const Triangle& v = second.triangles[static_cast<std::size_t>(other)];
     std::array<Vector3, 3> p;

@@ -3,6 +3,7 @@
 
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/tissue_view.hpp>
+#include <palpate/core/types.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -35,6 +36,14 @@ concept MovesBesideOthers = ChangesBesideOthers<T> && requires(const T& constant
   constant.steps();
 };
 
+/// One of rigid parts that touch each other and the other tissues, to which the pieces of tissues that are cut belong.
+template <class T>
+concept HasParts = MovesBesideOthers<T> && requires(T& tissue, const T& constant, const void* other) {
+  { constant.newest_parts() }
+  noexcept->std::same_as<std::span<const Index>>;
+  tissue.take_pieces(other);
+};
+
 struct ChangeFunctions {
   Status (*begin_tick)(void*) noexcept;
   BackgroundStep (*work)(void*);
@@ -46,6 +55,8 @@ struct ChangeFunctions {
   bool moves;
   Status (*order_status)(void*) noexcept = nullptr;  ///< null, as the next: it cannot be cut
   bool (*has_orders)(const void*) noexcept = nullptr;
+  std::span<const Index> (*parts)(const void*) noexcept = nullptr;  ///< null, as the next: it is one body
+  void (*take_pieces)(void*, const void*) = nullptr;
 };
 
 template <ChangesBesideOthers T>
@@ -65,6 +76,10 @@ struct ChangeCalls {
     if constexpr (requires(T & t) { t.order_status(); }) {
       f.order_status = [](void* t) noexcept -> Status { return static_cast<T*>(t)->order_status(); };
       f.has_orders = [](const void* t) noexcept -> bool { return static_cast<const T*>(t)->has_orders(); };
+    }
+    if constexpr (HasParts<T>) {
+      f.parts = [](const void* t) noexcept { return static_cast<const T*>(t)->newest_parts(); };
+      f.take_pieces = [](void* t, const void* other) { static_cast<T*>(t)->take_pieces(other); };
     }
     return f;
   }
@@ -155,6 +170,15 @@ class InterfaceTissue {
     }
     for (const VertexForce& f : forces) u += compliance(i, f.vertex) * f.force.in_model_axes();
     return u;
+  }
+  bool has_parts() const noexcept { return changes() && changes_->parts != nullptr; }
+  /// The part of every triangle; empty for one body.
+  std::span<const Index> parts() const noexcept {
+    return has_parts() ? changes_->parts(tissue_) : std::span<const Index>{};
+  }
+  /// After a cut of another tissue.
+  void take_pieces(const InterfaceTissue& other) {
+    if (has_parts()) changes_->take_pieces(tissue_, other.tissue_);
   }
   void set_contact_forces(std::span<const VertexForce> forces) {
     if (changes()) changes_->set_contact_forces(tissue_, forces);

@@ -149,14 +149,24 @@ class CutProcess : public CutState<E> {
     if (change.empty()) return;
     ++report_.cuts;
     ++report_.changes;
-    if (!change.fragments.empty()) system_.recover();  // displacement before this cut
-    resting_.update(topology_, change, system_.displacement(), largest_linear_displacement * diagonal_);
+    rest_fragments(change);
     touchable_.update(topology_, change);
     update_compliance(change);
     report_.latency = seconds();
     fold_update();
     report_.fold_seconds = seconds();
     if (!attempt([&] { remember(); })) before_.reset();  // the next cut tries again
+  }
+  /// Fragments stay as they were displaced before this cut: also by tools and other tissues, so that tools keep
+  /// their grip on one.
+  void rest_fragments(const TopologyChange<E>& change) {
+    constexpr double beside_tools = 3.0;  // a tool moves a part that hangs on little farther than loads may
+    if (!change.fragments.empty()) system_.recover();
+    const double largest = largest_linear_displacement * diagonal_ * (contact_forces_.empty() ? 1.0 : beside_tools);
+    if (change.fragments.empty() || contact_forces_.empty())
+      resting_.update(topology_, change, system_.displacement(), largest);
+    else
+      resting_.update(topology_, change, displacement_beside_others(), largest);
   }
   /// Completes a cut that ended early because memory was short; true when there was one.
   bool catch_up() {

@@ -45,7 +45,7 @@ PALPATE_INLINE TouchedTissue::TouchedTissue(const GroupMember& member, const Too
       coarse_facets_(report_coarse_facets(view_.contact_surface(), radii_of(tools_).smallest)),
       friction_(member.friction.value_or(options.contact.friction)),
       may_have_friction_(friction_.wanted() > 0.0) {
-  if (view_.contact_surface().triangles().empty())
+  if (view_.contact_surface().triangles().empty() && !view_.gains_pieces())
     raise(SetupErrorKind::bad_argument, "this tissue has no touchable surface",
           "Name a surface group with Scene::touch");
   touches_.reserve(tools.size());
