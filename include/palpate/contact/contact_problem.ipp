@@ -197,7 +197,11 @@ PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<
   is_near_ = are_near(tools);
   share_rows(tools, is_near_);
   set_levels(tools);
-  if (std::exchange(is_cut_, false)) status |= balance(tissue, tools);
+  if (std::exchange(is_cut_, false)) {
+    if (tissue.gains_pieces())  // a tool may grasp one of them in the tissue that it was cut off
+      for (Grasp& g : grasps_) g.requested = g.holds_any();
+    status |= balance(tissue, tools);
+  }
   candidates_.look_round(tissue, tools, displacement_);
   candidates_.prepare(tissue, tools, displacement_);
   return status;
