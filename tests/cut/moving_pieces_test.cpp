@@ -313,6 +313,36 @@ TEST_CASE("pieces: one that is cut off stays in the jaws, is carried, and falls 
   CHECK(density * volume == Catch::Approx(piece.shape->mass).epsilon(0.05));
 }
 
+TEST_CASE("pieces: a tool that grasps keeps the part that is cut off", "[moving_pieces]") {
+  Bar bar;
+  Organ tissue(box_tet4({20e-3, 20e-3, 5e-3}, {2, 2, 1}), Scene().fix("z0").touch("z1"), material);
+  tissue.set_pose(Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.5)));
+  MovingPieces pieces;
+  pieces.take_from(bar.tissue);
+  TouchingTissues touching(tissue, bar.tissue, pieces);
+  ServoOptions options;
+  options.grasp_buttons = 1;
+  options.contact.grasp_radius = 3e-3;
+  HapticServo servo(touching.group(), SphereTool{3e-3}, options);
+  double next = 0.0;
+  Vector3 force = Vector3::Zero();
+  for (int tick = 0; tick < 1200; ++tick) {
+    const double time = 1e-3 * tick;
+    ToolState state{.position = Vector3(Bar::length - 10e-3, 0.5 * Bar::width, Bar::height + 2.8e-3), .time = time};
+    state.now = time;
+    state.position[2] += 3e-3 * part(tick, 200, 400);
+    state.position[0] += 20e-3 * part(tick, 600, 1000);
+    state.buttons = tick > 100 ? 1u : 0u;
+    if (tick == 450) bar.tissue.cut(bar.sweep(Bar::height + 10e-3, -10e-3));
+    force = servo.tick(state).force();
+    while (time >= next) next += touching.background_work().next;
+  }
+  REQUIRE(pieces.pieces().size() == 1);
+  const MovingPiece piece = pieces.pieces().front();
+  CHECK(-force[2] == Catch::Approx(gravity * piece.shape->mass).epsilon(0.05));
+  CHECK(centre(piece)[0] - piece.shape->centre[0] == Catch::Approx(20e-3).epsilon(0.05));
+}
+
 TEST_CASE("pieces: one that is removed is gone, vertices keep their numbers, and clear begins again",
           "[moving_pieces]") {
   Organ tissue = slab();
