@@ -15,6 +15,7 @@
 
 #include "catch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -61,6 +62,10 @@ Vector3 centre(const MovingPieces& pieces, std::size_t k = 0) {
   return centre(pieces.pieces().at(k));
 }
 
+/// The part of the way at a tick.
+double part(int tick, int begin, int end) {
+  return std::clamp(static_cast<double>(tick - begin) / (end - begin), 0.0, 1.0);
+}
 void run(TouchingTissues& tissues, double seconds) {
   for (double time = 0.0; time < seconds;) time += tissues.background_work().next;
 }
@@ -211,6 +216,31 @@ TEST_CASE("pieces: a tool presses one against the slab", "[moving_pieces]") {
   CHECK_FALSE(status.has(StatusFlag::coarse_contact));
 }
 
+TEST_CASE("pieces: light ones that a flat tool presses deep stay under it", "[moving_pieces]") {
+  Organ tissue = slab();
+  MovingPieces pieces;
+  TouchingTissues touching(tissue, pieces);
+  const double size = GENERATE(3e-3, 4e-3, 6e-3, 8e-3);
+  pieces.add(block({30e-3, 30e-3, top + 0.5 * size}, Vector3::Constant(size)));
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(1e-3 * Vector3(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.5 : 1.5));
+  ServoOptions options;
+  options.contact.friction = 0.5;
+  options.devices = {DeviceLimits{.stiffness = 500.0}};
+  HapticServo servo(touching.group(), ConvexTool(corners, 1e-3), options);
+  double next = 0.0;
+  for (int tick = 0; tick < 700; ++tick) {
+    const double time = 1e-3 * tick;
+    ToolState state{.position = {30e-3, 30e-3, top + size + 0.5e-3 - 5e-3 * part(tick, 200, 600)}, .time = time};
+    state.now = time;
+    servo.tick(state);
+    while (time >= next) next += touching.background_work().next;
+  }
+  CHECK((centre(pieces) - Vector3(30e-3, 30e-3, top)).norm() < 5e-3);
+  CHECK(pieces.pieces().front().velocity.norm() < 0.3);
+}
+
 namespace {
 
 /// A bar along x, of which a blade between two jaws and the support cuts the free end off.
@@ -242,10 +272,6 @@ ServoOptions gripping() {
   options.contact.friction = 0.5;
   options.devices = {DeviceLimits{.stiffness = 500.0}, DeviceLimits{.stiffness = 500.0}};
   return options;
-}
-/// The part of the way at a tick.
-double part(int tick, int begin, int end) {
-  return std::clamp(static_cast<double>(tick - begin) / (end - begin), 0.0, 1.0);
 }
 
 }  // namespace
@@ -397,6 +423,10 @@ TEST_CASE("pieces: what makes no sense is refused", "[moving_pieces]") {
   CutOrgan light(box_tet4({10e-3, 10e-3, 10e-3}, {2, 2, 2}), Scene().fix("z0").touch("z1"),
                  LinearElastic{.youngs_modulus = 5e3, .poisson_ratio = 0.4});
   CHECK(test::refusal_kind([&] { pieces.take_from(light); }) == "bad_density");
+  Bar bar;
+  pieces.take_from(bar.tissue);
+  CHECK(test::refusal_kind([&] { TouchingTissues touching(pieces, bar.tissue); }) == "bad_argument");
+  CHECK(test::refusal_kind([&] { TouchingTissues touching(bar.tissue, pieces); }) == "accepted");
 }
 
 }  // namespace moving_pieces_test

@@ -156,8 +156,8 @@ class TouchingTissues {
  public:
   /// Of at least two tissues, or one with self contact. Solves up to ten times; allocates. Throws unsupported for a
   /// tissue that stiffens, for a static one whose columns are not all stored, and with self contact for one that can be
-  /// cut; bad_argument for a tissue without touchable surface and for options that make no sense; TissueClaim's error
-  /// for a tissue that moves or is cut and that a servo uses.
+  /// cut; bad_argument for a tissue without touchable surface, for pieces before the tissue that they come from, and
+  /// for options that make no sense; TissueClaim's error for a tissue that moves or is cut and that a servo uses.
   template <class... T>
   requires(sizeof...(T) > 1 && (TissueModel<T> && ...)) explicit TouchingTissues(T&... tissues)
       : TouchingTissues(TissueContactOptions{}, tissues...) {}

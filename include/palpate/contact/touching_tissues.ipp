@@ -228,6 +228,11 @@ PALPATE_INLINE TouchingTissues::TouchingTissues(std::vector<detail::InterfaceTis
       if (tissues[k].view().is_same(tissues[l].view()))
         raise(SetupErrorKind::bad_argument, "contact of a tissue with itself as if it were two",
               "Name every tissue once, and set self_contact where it may touch itself");
+  for (std::size_t k = 0; k < tissues.size(); ++k)
+    for (std::size_t l = 0; l < k; ++l)
+      if (tissues[l].takes_from(tissues[k]))
+        raise(SetupErrorKind::bad_argument, "pieces named before the tissue that they come from",
+              "A tick would be without a piece that is cut off: name MovingPieces last");
   for (const detail::InterfaceTissue& t : tissues) {
     if (options.self_contact && t.view().can_be_cut())
       raise(SetupErrorKind::unsupported, "contact with itself for a tissue that can be cut",
@@ -314,8 +319,9 @@ PALPATE_INLINE void TouchingTissues::follow_ticks(std::size_t k) {
       pushed += TouchingTissue::pushed_by(*t->newest_, t->given_.front().all()) - t->pushed_;
   problem_->follow(pushed);
   detail::InterfaceTissue& tissue = tissues_[k]->tissue_;
-  forces_.clear();
-  if (problem_->surface_number(k) == tissue.surface_number()) problem_->forces(k, forces_);  // else it was reset
+  problem_->forces(k, forces_);
+  const int vertices = tissue.surface().vertex_count();  // fewer where it was reset
+  std::erase_if(forces_, [vertices](const VertexForce& f) { return f.vertex >= vertices; });
   tissue.set_contact_forces(forces_);
 }
 

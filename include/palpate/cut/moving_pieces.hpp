@@ -5,9 +5,11 @@
 #include <palpate/concepts/tissue_model.hpp>
 #include <palpate/contact/contact_problem.hpp>
 #include <palpate/contact/contact_surface.hpp>
+#include <palpate/contact/detail/interface_tissue.hpp>
 #include <palpate/core/thread_exchange.hpp>
 #include <palpate/cut/detached_piece.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -40,7 +42,8 @@ struct MovingPiece {
 /// A step is that of the symplectic Euler method, exact in free flight at the ends of steps. Forces at the end of a
 /// step correct it (as MovingTissue): between two steps ticks have the positions at the end of the present one without
 /// forces, and the compliance step^2 J M^-1 J^T. Impacts are inelastic: forces of tissue do not add to the speed at
-/// which a piece leaves. One step costs O(vertices).
+/// which a piece leaves. Friction slows a piece and its rotation about the normal; the tissue does not feel it. One
+/// step costs O(vertices).
 ///
 /// Threads: as MovingTissue; the functions for any thread wait for a step in progress. Satisfies TissueModel. Vertices
 /// keep their numbers, also when pieces are removed; `clear` begins again.
@@ -56,10 +59,16 @@ class MovingPieces {
 
   // Any thread but the one that ticks
 
-  /// Takes the pieces that are cut off a tissue from now on; both must be in the same TouchingTissues, the tissue
-  /// before the pieces. The tissue must outlive this object. Throws bad_density for a tissue without.
+  /// Takes the pieces that are cut off a tissue from now on; to be called before both are given to a TouchingTissues,
+  /// the tissue before the pieces. The tissue must outlive this object. Those that have been cut off before
+  /// come with its next cut. Throws bad_density for a tissue without, bad_argument for one that is named already.
   template <class E, class M, class Solver>
   void take_from(HapticFEModel<E, M, Solver>& tissue) {
+    static_assert(
+        !detail::MovesBesideOthers<HapticFEModel<E, M, Solver>>,
+        "palpate: pieces of tissue that moves are added by the thread that draws: `add` with detached_pieces");
+    if (takes_from(&tissue))
+      raise(SetupErrorKind::bad_argument, "pieces taken from one tissue twice", "Call take_from once per tissue");
     for (const double density : tissue.body().density)
       if (!(density > 0.0))
         raise(SetupErrorKind::bad_density, "pieces of a tissue without density", "Give the material a density");
@@ -68,12 +77,14 @@ class MovingPieces {
         {&tissue, [&tissue] { return detached_pieces(tissue); },
          [&tissue](const std::vector<Index>& elements) { tissue.cut(CutOrder{.remove = elements, .open = {}}); }});
   }
-  /// Adds a rigid body from the next step on, world frame; returns its id. Throws bad_argument for a body without mass,
-  /// inertia or triangles, bad_density likewise, index_out_of_range for a triangle with a point that does not exist.
+  /// Adds a rigid body from the next step on, world frame; returns its id. Throws bad_density for a body without mass
+  /// or inertia, bad_argument for one without triangles, non_finite, index_out_of_range for a triangle with a point
+  /// that does not exist.
   int add(DetachedPiece piece, const Vector3& velocity = Vector3::Zero());
   /// Removes a piece from the next step on. Throws index_out_of_range for an id that does not exist.
   void remove(int id);
-  /// Removes all pieces. Not while a tick or a step runs; call TouchingTissues::reset afterwards.
+  /// Removes all pieces; ids begin at 0 again. Not while a tick or a step runs; call TouchingTissues::reset afterwards.
+  /// After `reset` of a tissue that pieces come from: that tissue first, then `clear`, then TouchingTissues.
   void clear();
   /// All pieces. Allocates.
   std::vector<MovingPiece> pieces() const;
@@ -95,6 +106,7 @@ class MovingPieces {
   Matrix3 newest_compliance(int i, int j) const noexcept { return newest_->compliance(i, j); }
   /// The piece of every triangle.
   std::span<const Index> newest_parts() const noexcept { return parts_; }
+  bool takes_from(const void* tissue) const;
   /// Takes the pieces that a cut has just detached from this tissue, if they belong here.
   void take_pieces(const void* tissue);
 
@@ -117,8 +129,8 @@ class MovingPieces {
   NoHook try_cut(const BladeSweep&) noexcept { return {}; }
   NoHook half_space_map(int) const noexcept { return {}; }
   bool gains_pieces() const noexcept { return true; }
-  NoHook report_slow(bool) noexcept { return {}; }
-  NoHook report_failed(bool) noexcept { return {}; }
+  void report_slow(bool slow) noexcept { slow_.store(slow, std::memory_order_relaxed); }
+  void report_failed(bool failed) noexcept { failed_.store(failed, std::memory_order_relaxed); }
   TissueClaim& claim() noexcept { return claim_; }
 
  private:
@@ -139,6 +151,8 @@ class MovingPieces {
     Matrix3 inverse_inertia;    // at the start
     Place now, free;            // free: at the end of the present step without forces
     Vector3 velocity = Vector3::Zero(), angular_momentum = Vector3::Zero();
+    double part = 1.0;      // of what forces and gravity do to it, while a tool touches it
+    int after_tool = 0;     // steps in which this lasts
     std::size_t first = 0;  // of its vertices
     bool is_fresh = true;   // added since the last step
     bool is_removed = false;
@@ -168,11 +182,13 @@ class MovingPieces {
   void insert(DetachedPiece piece, const Vector3& velocity);
   void add_loads(std::span<const VertexForce> forces, std::vector<Load>& loads) const noexcept;
   void correct(Piece& piece, const Load& tools, const Load& others) const noexcept;
-  void slow_down(const Vector3& force, double mass, double radius, Vector3& velocity,
-                 Vector3& angular_momentum) const noexcept;
+  void slow_down(const Piece& piece, const Vector3& force, Vector3& velocity, Vector3& angular_momentum) const noexcept;
   void predict(Piece& piece) const noexcept;
   void make_surface();
   void publish();
+
+  static constexpr double largest_compliance = 2e-3;  // of a step [m/N]: softer, tools and tissue move it in turn
+  static constexpr int steps_after_tool = 25;
 
   PieceParameters parameters_;
   Eigen::Isometry3d to_world_ = Eigen::Isometry3d::Identity();
@@ -195,6 +211,7 @@ class MovingPieces {
   TripleBuffer<Forces> given_;
   const View* newest_ = nullptr;
   Status ticked_;
+  std::atomic<bool> slow_{false}, failed_{false};
   std::uint64_t seen_ = 0;
   TissueClaim claim_;
 };

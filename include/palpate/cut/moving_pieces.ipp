@@ -56,8 +56,16 @@ PALPATE_INLINE void MovingPieces::set_gravity(const Vector3& gravity) {
 
 PALPATE_INLINE int MovingPieces::add(DetachedPiece piece, const Vector3& velocity) {
   const int points = static_cast<int>(piece.points.size());
-  if (!(piece.mass > 0.0 && piece.mass < infinity) || !(determinant(piece.inertia) > 0.0))
-    raise(SetupErrorKind::bad_density, "a piece without mass or inertia", "Give it both");
+  const Matrix3& inertia = piece.inertia;
+  const bool is_positive = inertia(0, 0) > 0.0 && inertia(0, 0) * inertia(1, 1) > inertia(0, 1) * inertia(1, 0) &&
+                           determinant(inertia) > 0.0 && all_finite(inertia);
+  if (!(piece.mass > 0.0 && piece.mass < infinity) || !is_positive)
+    raise(SetupErrorKind::bad_density, "a piece whose mass or inertia is not positive and finite", "Give it both");
+  bool is_finite = all_finite(piece.centre) && all_finite(velocity);
+  for (const Vector3& p : piece.points) is_finite = is_finite && all_finite(p);
+  if (!is_finite)
+    raise(SetupErrorKind::non_finite, "a piece with a centre, point or velocity that is not finite",
+          "Give all in SI units");
   if (piece.triangles.empty())
     raise(SetupErrorKind::bad_argument, "a piece without surface", "Give it triangles, outward");
   for (const auto& t : piece.triangles)
@@ -65,7 +73,6 @@ PALPATE_INLINE int MovingPieces::add(DetachedPiece piece, const Vector3& velocit
       if (v < 0 || v >= points)
         raise(SetupErrorKind::index_out_of_range,
               "a triangle with point " + std::to_string(v) + " of a piece with " + std::to_string(points));
-  if (!all_finite(velocity)) raise(SetupErrorKind::non_finite, "a piece with a velocity that is not finite");
   const std::scoped_lock lock(changes_);
   insert(std::move(piece), velocity);
   return static_cast<int>(pieces_.size()) - 1;
@@ -103,6 +110,7 @@ PALPATE_INLINE void MovingPieces::clear() {
   pieces_.clear();
   piece_of_.clear();
   others_.clear();
+  end_tick({});
   make_surface();
   publish();
   views_.update();
@@ -119,6 +127,11 @@ PALPATE_INLINE std::vector<MovingPiece> MovingPieces::pieces() const {
         {static_cast<int>(p), piece.shape, make_pose(r, piece.now.centre - r * piece.shape->centre), piece.velocity});
   }
   return all;
+}
+
+PALPATE_INLINE bool MovingPieces::takes_from(const void* tissue) const {
+  const std::scoped_lock lock(changes_);
+  return std::ranges::any_of(sources_, [tissue](const Source& s) { return s.tissue == tissue; });
 }
 
 PALPATE_INLINE void MovingPieces::take_pieces(const void* tissue) {
@@ -156,31 +169,34 @@ PALPATE_INLINE void MovingPieces::add_loads(std::span<const VertexForce> forces,
   }
 }
 
-/// The present step, for the forces at its end. Tissue moves the piece out of its way, and does not push it off.
+/// The present step, for the forces at its end. Tissue moves the piece out of its way, but no part of its impulse makes
+/// the piece leave faster than it would without: the energy does not grow.
 PALPATE_INLINE void MovingPieces::correct(Piece& piece, const Load& tools, const Load& others) const noexcept {
-  const double h = parameters_.step, mass = piece.shape->mass;
-  const Vector3 without = (piece.free.centre - piece.now.centre) / h + h / mass * tools.force;
-  const Vector3 spin = piece.angular_momentum + h * tools.moment;
-  Vector3 velocity = without + h / mass * others.force, momentum = spin + h * others.moment;
-  slow_down(others.force, mass, piece.radius, velocity, momentum);
-  const Matrix3 by_moment = inverse_inertia(piece, piece.free.rotation);
-  piece.now.centre += h * velocity;
-  piece.now.rotation = rotation_by(h * (by_moment * (momentum - piece.angular_momentum))) * piece.free.rotation;
-  const auto limited = [](const Vector3& value, const Vector3& free, const Vector3& along) {
-    const double length = along.norm();
-    if (!(length > 0.0)) return value;
-    const Vector3 direction = along / length;
-    const double most = std::max(0.0, free.dot(direction)), is = value.dot(direction);
-    return is > most ? Vector3(value - (is - most) * direction) : value;
-  };
-  piece.velocity = limited(velocity, without, others.force);
-  piece.angular_momentum = limited(momentum, spin, others.moment);
+  const double h = parameters_.step, by_force = h * piece.part / piece.shape->mass;
+  const Matrix3 inverse = inverse_inertia(piece, piece.free.rotation);
+  const Vector3 velocity = (piece.free.centre - piece.now.centre) / h + by_force * tools.force;
+  const Vector3 momentum = piece.angular_momentum + h * piece.part * tools.moment;
+  Vector3 pushed = velocity + by_force * others.force, twisted = momentum + h * piece.part * others.moment;
+  slow_down(piece, others.force, pushed, twisted);
+  piece.now.centre += h * pushed;
+  piece.now.rotation = rotation_by(h * (inverse * (twisted - piece.angular_momentum))) * piece.free.rotation;
+
+  const double before = others.force.dot(velocity) + others.moment.dot(inverse * momentum);
+  const double change =
+      by_force * others.force.squaredNorm() + h * piece.part * others.moment.dot(inverse * others.moment);
+  const double used = change > 0.0 ? std::clamp(-before / change, 0.0, 1.0) : 0.0;
+  piece.velocity = velocity + used * by_force * others.force;
+  piece.angular_momentum = momentum + used * h * piece.part * others.moment;
+  slow_down(piece, others.force, piece.velocity, piece.angular_momentum);
+  piece.after_tool = tools.force.squaredNorm() > 0.0 ? steps_after_tool : std::max(0, piece.after_tool - 1);
+  const double compliance = h * h / piece.shape->mass;
+  piece.part = piece.after_tool > 0 ? std::min(1.0, largest_compliance / compliance) : 1.0;
 }
 
 /// Coulomb friction of the resulting force of the tissue.
-PALPATE_INLINE void MovingPieces::slow_down(const Vector3& force, double mass, double radius, Vector3& velocity,
+PALPATE_INLINE void MovingPieces::slow_down(const Piece& piece, const Vector3& force, Vector3& velocity,
                                             Vector3& angular_momentum) const noexcept {
-  const double magnitude = force.norm(), impulse = parameters_.friction * parameters_.step * magnitude;
+  const double magnitude = force.norm(), impulse = parameters_.friction * parameters_.step * piece.part * magnitude;
   if (!(impulse > 0.0)) return;
   const Vector3 normal = force / magnitude;
   const auto slow = [](Vector3& value, const Vector3& part, double most) {
@@ -188,15 +204,15 @@ PALPATE_INLINE void MovingPieces::slow_down(const Vector3& force, double mass, d
     if (length > 0.0) value -= std::min(1.0, most / length) * part;
   };
   const Vector3 sliding = velocity - normal.dot(velocity) * normal;
-  slow(velocity, sliding, impulse / mass);
+  slow(velocity, sliding, impulse / piece.shape->mass);
   const Vector3 twisting = normal.dot(angular_momentum) * normal;
-  slow(angular_momentum, twisting, impulse * radius);
+  slow(angular_momentum, twisting, impulse * piece.radius);
 }
 
 /// The rotation is that of the velocity in the middle of the step (explicit midpoint rule).
 PALPATE_INLINE void MovingPieces::predict(Piece& piece) const noexcept {
   const double h = parameters_.step;
-  piece.free.centre = piece.now.centre + h * (piece.velocity + h * parameters_.gravity);
+  piece.free.centre = piece.now.centre + h * (piece.velocity + h * piece.part * parameters_.gravity);
   const auto spin = [&](const Matrix3& rotation) {
     return Vector3(inverse_inertia(piece, rotation) * piece.angular_momentum);
   };
@@ -266,8 +282,8 @@ PALPATE_INLINE void MovingPieces::publish() {
   double largest = 0.0, smallest = infinity;
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     const Piece& piece = pieces_[p];
-    view.by_force[p] = squared / piece.shape->mass;
-    view.by_moment[p] = squared * inverse_inertia(piece, piece.free.rotation);
+    view.by_force[p] = piece.part * squared / piece.shape->mass;
+    view.by_moment[p] = piece.part * squared * inverse_inertia(piece, piece.free.rotation);
     for (std::size_t k = 0; k < piece.arms.size(); ++k) {
       const std::size_t v = piece.first + k;
       view.arm[v] = piece.free.rotation * piece.arms[k];
@@ -287,6 +303,8 @@ PALPATE_INLINE void MovingPieces::publish() {
 PALPATE_INLINE Status MovingPieces::begin_tick() noexcept {
   views_.update();
   Status status = ticked_;
+  if (slow_.load(std::memory_order_relaxed)) status.set(StatusFlag::slow_tissue);
+  if (failed_.load(std::memory_order_relaxed)) status.set(StatusFlag::stalled_tissue);
   if (views_.front().left_out) status.set(StatusFlag::degraded_model);
   return status;
 }

@@ -83,6 +83,7 @@ class InterfaceProblem {
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
     double path = 0.0;                         // of parts, from the last solution without forces of rows [m]
+    double room = 0.0;                         // the same during all of a solution
     std::uint64_t revision = 0, number = 0;    // of the surface; of its triangles
     std::vector<double>
         closed_gap{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite

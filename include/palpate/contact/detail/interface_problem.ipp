@@ -114,10 +114,11 @@ PALPATE_INLINE bool InterfaceProblem::find_paths() noexcept {
   constexpr double considerable = 0.25;  // of a mean facet
   bool found = false;
   for (Body& body : bodies_) {
-    body.path = 0.0;
+    body.path = body.room = 0.0;
     if (body.parts.empty()) continue;
     for (std::size_t v = 0; v < body.base.size(); ++v)
       body.path = std::max(body.path, (body.pose * body.base[v] - body.now[v]).norm());
+    body.room = body.path;
     if (body.path < considerable * body.facet_length)
       body.path = 0.0;
     else
@@ -151,7 +152,7 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
 PALPATE_INLINE bool InterfaceProblem::keeps_shape() const noexcept {
   for (const Body& body : bodies_) {
     if (body.triangles.empty()) continue;  // all of it has been cut away
-    const double size = body.tissue.surface().bvh().bounds().size().norm() + body.path;
+    const double size = body.tissue.surface().bvh().bounds().size().norm() + body.room;
     for (std::size_t v = 0; v < body.now.size(); ++v)
       if (!((body.now[v] - body.pose * body.base[v]).norm() <= size)) return false;
   }
@@ -297,7 +298,7 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   constexpr double tolerance = 1e-3, flagged = 0.05;  // of the displacement between two of them
   Status status;
   double change = infinity;
-  bool solved = true;
+  bool solved = true, is_dropped = false;
   if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
   find_responses();  // of rows at surfaces that have changed
   if (!find_paths()) move_bodies();
@@ -311,12 +312,12 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
     change = move_bodies();
     if (!keeps_shape()) {
       for (Row& r : rows_) r.force = r.followed = 0.0;
-      solved = false;
+      is_dropped = true;
       move_bodies();
     }
     for (Body& body : bodies_) body.path = 0.0;
   }
-  if (!solved || change > flagged) status.set(StatusFlag::solver_not_converged);
+  if (!solved || is_dropped || change > flagged) status.set(StatusFlag::solver_not_converged);
   if (has_entered()) status.set(StatusFlag::lost_contact);
   if (overlaps_) status.set(StatusFlag::large_displacement);
   if (is_coarse()) status.set(StatusFlag::coarse_contact);

@@ -41,6 +41,7 @@ template <class T>
 concept HasParts = MovesBesideOthers<T> && requires(T& tissue, const T& constant, const void* other) {
   { constant.newest_parts() }
   noexcept->std::same_as<std::span<const Index>>;
+  { constant.takes_from(other) } -> std::same_as<bool>;
   tissue.take_pieces(other);
 };
 
@@ -57,6 +58,7 @@ struct ChangeFunctions {
   bool (*has_orders)(const void*) noexcept = nullptr;
   std::span<const Index> (*parts)(const void*) noexcept = nullptr;  ///< null, as the next: it is one body
   void (*take_pieces)(void*, const void*) = nullptr;
+  bool (*takes_from)(const void*, const void*) = nullptr;
 };
 
 template <ChangesBesideOthers T>
@@ -80,6 +82,7 @@ struct ChangeCalls {
     if constexpr (HasParts<T>) {
       f.parts = [](const void* t) noexcept { return static_cast<const T*>(t)->newest_parts(); };
       f.take_pieces = [](void* t, const void* other) { static_cast<T*>(t)->take_pieces(other); };
+      f.takes_from = [](const void* t, const void* other) { return static_cast<const T*>(t)->takes_from(other); };
     }
     return f;
   }
@@ -175,6 +178,10 @@ class InterfaceTissue {
   /// The part of every triangle; empty for one body.
   std::span<const Index> parts() const noexcept {
     return has_parts() ? changes_->parts(tissue_) : std::span<const Index>{};
+  }
+  /// Whether the pieces of another tissue belong to it.
+  bool takes_from(const InterfaceTissue& other) const {
+    return has_parts() && changes_->takes_from(tissue_, other.tissue_);
   }
   /// After a cut of another tissue.
   void take_pieces(const InterfaceTissue& other) {
