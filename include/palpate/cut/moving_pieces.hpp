@@ -187,7 +187,7 @@ class MovingPieces {
   void make_surface();
   void publish();
 
-  static constexpr double largest_compliance = 2e-3;  // of a step [m/N]: softer, tools and tissue move it in turn
+  static constexpr double largest_compliance = 5e-4;  // of a step [m/N]: softer, tools and tissue move it in turn
   static constexpr int steps_after_tool = 25;
 
   PieceParameters parameters_;
