@@ -42,8 +42,9 @@ struct MovingPiece {
 /// A step is that of the symplectic Euler method, exact in free flight at the ends of steps. Forces at the end of a
 /// step correct it (as MovingTissue): between two steps ticks have the positions at the end of the present one without
 /// forces, and the compliance step^2 J M^-1 J^T. Impacts are inelastic: forces of tissue do not add to the speed at
-/// which a piece leaves. Friction slows a piece and its rotation about the normal; the tissue does not feel it. One
-/// step costs O(vertices).
+/// which a piece leaves. Friction slows a piece and its rotation about the normal; the tissue does not feel it. While a
+/// tool touches it, a piece lighter than step^2 2000 N/m has that inertia, and its own weight: the forces of tool and
+/// tissue, which are found in turn, would throw it away. One step costs O(vertices).
 ///
 /// Threads: as MovingTissue; the functions for any thread wait for a step in progress. Satisfies TissueModel. Vertices
 /// keep their numbers, also when pieces are removed; `clear` begins again.
