@@ -66,6 +66,13 @@ Vector3 centre(const MovingPieces& pieces, std::size_t k = 0) {
 double part(int tick, int begin, int end) {
   return std::clamp(static_cast<double>(tick - begin) / (end - begin), 0.0, 1.0);
 }
+/// A plate of 8 x 8 mm and 1 mm, with rounded edges of 1 mm.
+ConvexTool plate() {
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(1e-3 * Vector3(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.5 : -0.5));
+  return {corners, 1e-3};
+}
 void run(TouchingTissues& tissues, double seconds) {
   for (double time = 0.0; time < seconds;) time += tissues.background_work().next;
 }
@@ -78,7 +85,7 @@ Vector3 force_on(TouchingTissues& tissues, std::size_t k) {
 
 }  // namespace
 
-TEST_CASE("pieces: free flight keeps energy and momenta, and is that of a parabola", "[moving_pieces]") {
+TEST_CASE("pieces: free flight is a parabola", "[moving_pieces]") {
   MovingPieces pieces({.step = 1e-3});
   const Vector3 start(0.0, 0.0, 0.1), velocity(0.3, -0.2, 1.0);
   REQUIRE(pieces.add(block(start), velocity) == 0);
@@ -191,6 +198,23 @@ TEST_CASE("pieces: three on top of each other rest, and the slab bears all of th
     CHECK(centre(pieces, k)[2] - centre(pieces, k - 1)[2] == Catch::Approx(piece_size[2]).epsilon(0.01));
 }
 
+TEST_CASE("pieces: one inside another is flagged", "[moving_pieces]") {
+  Organ tissue = slab();
+  MovingPieces pieces({.gravity = Vector3::Zero()});
+  TouchingTissues touching(tissue, pieces);
+  const Vector3 middle(30e-3, 30e-3, 60e-3);
+  pieces.add(block(middle, Vector3::Constant(12e-3)));
+  run(touching, 0.01);
+  CHECK(touching.report().status.ok());
+  pieces.add(block(middle, Vector3::Constant(3e-3)));
+  for (int step = 0; step < 20; ++step) {
+    run(touching, 2e-3);
+    if (step > 1 && (centre(pieces, 1) - centre(pieces, 0)).norm() < 4e-3)
+      CHECK(touching.report().status.has(StatusFlag::lost_contact));
+  }
+  CHECK((centre(pieces, 1) - centre(pieces, 0)).norm() < 4e-3);  // it does not get out
+}
+
 TEST_CASE("pieces: a tool presses one against the slab", "[moving_pieces]") {
   Organ tissue = slab();
   MovingPieces pieces;
@@ -222,17 +246,14 @@ TEST_CASE("pieces: light ones that a flat tool presses deep stay under it", "[mo
   TouchingTissues touching(tissue, pieces);
   const double size = GENERATE(3e-3, 4e-3, 6e-3, 8e-3);
   pieces.add(block({30e-3, 30e-3, top + 0.5 * size}, Vector3::Constant(size)));
-  std::vector<Vector3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(1e-3 * Vector3(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.5 : 1.5));
   ServoOptions options;
   options.contact.friction = 0.5;
   options.devices = {DeviceLimits{.stiffness = 500.0}};
-  HapticServo servo(touching.group(), ConvexTool(corners, 1e-3), options);
+  HapticServo servo(touching.group(), plate(), options);
   double next = 0.0;
   for (int tick = 0; tick < 700; ++tick) {
     const double time = 1e-3 * tick;
-    ToolState state{.position = {30e-3, 30e-3, top + size + 0.5e-3 - 5e-3 * part(tick, 200, 600)}, .time = time};
+    ToolState state{.position = {30e-3, 30e-3, top + size + 1.5e-3 - 5e-3 * part(tick, 200, 600)}, .time = time};
     state.now = time;
     servo.tick(state);
     while (time >= next) next += touching.background_work().next;
@@ -253,12 +274,6 @@ struct Bar {
     const double in = -5e-3, out = width + 5e-3;
     return {{cut_at, in, from}, {cut_at, out, from}, {cut_at, in, to}, {cut_at, out, to}};
   }
-  static ConvexTool jaw() {
-    std::vector<Vector3> points;
-    for (int i = 0; i < 8; ++i)
-      points.push_back(1e-3 * Vector3(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.5 : -0.5));
-    return {points, 1e-3};
-  }
   /// Middles of the jaws around the free end, at an opening between them, lifted and moved along x.
   static std::array<Vector3, 2> jaws(double opening, double lift, double along) {
     const Vector3 middle(length - 8e-3 + along, 0.5 * width, 0.5 * height + lift);
@@ -278,7 +293,7 @@ ServoOptions gripping() {
 
 TEST_CASE("pieces: jaws keep their grip while the tissue between them is cut", "[moving_pieces]") {
   Bar bar;
-  HapticServo servo(bar.tissue, {Bar::jaw(), Bar::jaw()}, gripping());
+  HapticServo servo(bar.tissue, {plate(), plate()}, gripping());
   double before = 0.0;
   for (int tick = 0; tick < 500; ++tick) {
     const auto places = Bar::jaws(10e-3 - 4e-3 * part(tick, 0, 100), 4e-3 * part(tick, 100, 300), 0.0);
@@ -303,7 +318,7 @@ TEST_CASE("pieces: one that is cut off stays in the jaws, is carried, and falls 
   MovingPieces pieces;
   pieces.take_from(bar.tissue);
   TouchingTissues touching(tissue, bar.tissue, pieces);
-  HapticServo servo(touching.group(), {Bar::jaw(), Bar::jaw()}, gripping());
+  HapticServo servo(touching.group(), {plate(), plate()}, gripping());
   double next = 0.0, lifted = 0.0, weight = 0.0, carried = 0.0, borne = 0.0;
   for (int tick = 0; tick < 1500; ++tick) {
     const double time = 1e-3 * tick;

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <palpate/core/config.hpp>
+#include <palpate/core/small_matrix.hpp>
+#include <palpate/core/status.hpp>
 #include <palpate/core/types.hpp>
 
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cstddef>
+#include <span>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
@@ -48,6 +52,25 @@ struct VertexForce {
   int vertex = -1;
   ModelVector force{};  ///< on the tissue [N]
 };
+
+namespace detail {
+
+/// Copies the finite ones of these forces; `count` is how many there are then. Flags non_finite_force where some are
+/// not finite, degraded_model where there are more than `to` has room for.
+inline Status copy_finite(std::span<const VertexForce> forces, std::span<VertexForce> to, std::size_t& count) noexcept {
+  Status status;
+  count = 0;
+  for (const VertexForce& f : forces)
+    if (!all_finite(f.force.in_model_axes()))
+      status.set(StatusFlag::non_finite_force);
+    else if (count < to.size())
+      to[count++] = f;
+    else
+      status.set(StatusFlag::degraded_model);
+  return status;
+}
+
+}  // namespace detail
 
 /// A force on one point of the touchable surface. The vertices of its facet share it by the weights, which add up to 1.
 struct PointForce {

@@ -181,7 +181,7 @@ class ContactProblem {
   std::array<bool, maximum_tools> coarse_{};      // tools that press facets too coarse for them
   bool late_ = false;                             // a column of the compliance was missing in the last `solve`
   bool arrived_ = true;                           // proxies are at the solution of the last linearisation
-  bool is_cut_ = false;                           // since the last tick
+  bool has_new_surface_ = false;                  // since the last tick
   std::array<bool, maximum_tools> is_near_{};     // tools with contact points near them
   double rest_of_change_ = 0.0;                   // relative change of force that is left
   double feedback_ = 0.0, most_feedback_ = largest_feedback;

@@ -197,7 +197,7 @@ PALPATE_INLINE Status ContactProblem::begin(const TissueView& tissue, std::span<
   is_near_ = are_near(tools);
   share_rows(tools, is_near_);
   set_levels(tools);
-  if (std::exchange(is_cut_, false)) {
+  if (std::exchange(has_new_surface_, false)) {
     if (tissue.gains_pieces())  // a tool may grasp one of them in the tissue that it was cut off
       for (Grasp& g : grasps_) g.requested = g.holds_any();
     status |= balance(tissue, tools);
@@ -614,7 +614,7 @@ PALPATE_INLINE void ContactProblem::move_to(ContactProblem& fresh, const Contact
   levels_.change_points();
   pressing_count_ = violated_count_ = 0;
   feedback_ = 0.0;
-  is_cut_ = true;
+  has_new_surface_ = true;
 }
 
 PALPATE_INLINE void ContactProblem::reset() noexcept {
@@ -628,7 +628,7 @@ PALPATE_INLINE void ContactProblem::reset() noexcept {
   for (Grasp& g : grasps_) g.release();
   pressing_count_ = violated_count_ = 0;
   arrived_ = true;
-  is_cut_ = false;
+  has_new_surface_ = false;
   feedback_ = of_lifted_ = most_of_lifted_ = 0.0;
   most_feedback_ = largest_feedback;
 }
@@ -710,10 +710,6 @@ PALPATE_INLINE void ContactProblem::prefetch(const TissueView& tissue) noexcept 
   }
 }
 
-/// One Signorini problem, linearised where proxies and surface are (`start_`): distances and normals of all points stay
-/// as they are there while rows are added until no point penetrates. The distance to a point is a convex function, so a
-/// step of any length to the solution keeps all points out of the sphere. Updates the forces of points, vertices and
-/// tools. The caller guarantees that rounds are left: the rows are those of the forces.
 /// After a cut: the forces with which the points that pressed stay where they are. The forces before it could move a
 /// part that hangs on less of the tissue so far away that the tools would lose it.
 PALPATE_INLINE Status ContactProblem::balance(const TissueView& tissue, Tools tools) noexcept {
@@ -736,6 +732,7 @@ PALPATE_INLINE Status ContactProblem::balance(const TissueView& tissue, Tools to
   return status;
 }
 
+/// The rows of what is grasped, and of the points that press.
 PALPATE_INLINE void ContactProblem::add_rows(const TissueView& tissue) noexcept {
   rows_.clear();
   for (Grasp& g : grasps_)
@@ -750,6 +747,10 @@ PALPATE_INLINE void ContactProblem::add_rows(const TissueView& tissue) noexcept 
   }
 }
 
+/// One Signorini problem, linearised where proxies and surface are (`start_`): distances and normals of all points stay
+/// as they are there while rows are added until no point penetrates. The distance to a point is a convex function, so a
+/// step of any length to the solution keeps all points out of the sphere. Updates the forces of points, vertices and
+/// tools. The caller guarantees that rounds are left: the rows are those of the forces.
 PALPATE_INLINE void ContactProblem::solve_linearised(const TissueView& tissue, Tools tools, int iteration,
                                                      Status& status) noexcept {
   gather_pressing(tissue, tools);

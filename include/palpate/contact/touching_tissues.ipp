@@ -134,22 +134,14 @@ PALPATE_INLINE void TouchingTissue::exchange_contacts(ContactProblem& problem) n
 PALPATE_INLINE void TouchingTissue::end_tick(std::span<const VertexForce> forces,
                                              std::span<const PointForce> points) noexcept {
   Forces& out = given_.back();
-  out.count = 0;
-  ticked_ = {};
-  for (const VertexForce& f : forces)
-    if (!all_finite(f.force.in_model_axes()))
-      ticked_.set(StatusFlag::non_finite_force);
-    else if (out.count < out.item.size())
-      out.item[out.count++] = f;
-    else
-      ticked_.set(StatusFlag::degraded_model);
+  ticked_ = detail::copy_finite(forces, out.item, out.count);
   out.near_vertices.copy(near_.all());
   out.pressed.copy(pressed_.all());
   given_.publish();
   tissue_.view().end_tick(forces, points);
 }
 
-/// The contact points of a tissue that can be cut depend on the tools, so that its surface is made again.
+/// The surface of a tissue that can be cut, and of pieces, is made again, since its contact points depend on the tools.
 PALPATE_INLINE void TouchingTissue::prepare_tools(const ToolRadii& radii, const ContactParameters& parameters) {
   const std::scoped_lock lock(owner_.changes_);
   tissue_.view().prepare_tools(radii, parameters);

@@ -60,9 +60,10 @@ class MovingPieces {
 
   // Any thread but the one that ticks
 
-  /// Takes the pieces that are cut off a tissue from now on; to be called before both are given to a TouchingTissues,
-  /// the tissue before the pieces. The tissue must outlive this object. Those that have been cut off before
-  /// come with its next cut. Throws bad_density for a tissue without, bad_argument for one that is named already.
+  /// Takes the pieces that are cut off a static tissue from now on; to be called before both are given to a
+  /// TouchingTissues, the tissue before the pieces. The tissue must outlive this object. Those that have been cut off
+  /// before come with its next cut. Throws bad_density for a tissue without, bad_argument for one that is named
+  /// already.
   template <class E, class M, class Solver>
   void take_from(HapticFEModel<E, M, Solver>& tissue) {
     static_assert(
@@ -89,6 +90,7 @@ class MovingPieces {
   void clear();
   /// All pieces. Allocates.
   std::vector<MovingPiece> pieces() const;
+  /// World frame [m/s^2]. Throws bad_argument where it is not finite.
   void set_gravity(const Vector3& gravity);
 
   // The thread that steps
@@ -152,8 +154,8 @@ class MovingPieces {
     Matrix3 inverse_inertia;    // at the start
     Place now, free;            // free: at the end of the present step without forces
     Vector3 velocity = Vector3::Zero(), angular_momentum = Vector3::Zero();
-    double part = 1.0;      // of what forces and gravity do to it, while a tool touches it
-    int after_tool = 0;     // steps in which this lasts
+    double mobility = 1.0;  // factor on its motion by forces and gravity; less while a tool touches it
+    int after_tool = 0;     // number of steps for which this lasts
     std::size_t first = 0;  // of its vertices
     bool is_fresh = true;   // added since the last step
     bool is_removed = false;
@@ -180,7 +182,9 @@ class MovingPieces {
   };
 
   Matrix3 inverse_inertia(const Piece& piece, const Matrix3& rotation) const noexcept;
-  void insert(DetachedPiece piece, const Vector3& velocity);
+  Piece make_piece(DetachedPiece piece, const Vector3& velocity) const;
+  void reserve(std::span<const Piece> more);
+  void insert(Piece&& piece) noexcept;
   void add_loads(std::span<const VertexForce> forces, std::vector<Load>& loads) const noexcept;
   void correct(Piece& piece, const Load& tools, const Load& others) const noexcept;
   void slow_down(const Piece& piece, const Vector3& force, Vector3& velocity, Vector3& angular_momentum) const noexcept;

@@ -16,19 +16,22 @@ namespace palpate { inline namespace PALPATE_ABI {
 
 static_assert(TissueModel<MovingPieces>);
 
+namespace detail {
+
 /// a x b = cross_matrix(a) b
 inline Matrix3 cross_matrix(const Vector3& a) noexcept {
   const double rows[3][3] = {{0.0, -a[2], a[1]}, {a[2], 0.0, -a[0]}, {-a[1], a[0], 0.0}};
-  return detail::matrix_of_rows(rows);
+  return matrix_of_rows(rows);
 }
+
+}  // namespace detail
 
 /// step^2 (1 / m - [r_i] I^-1 [r_j])
 PALPATE_INLINE Matrix3 MovingPieces::View::compliance(int i, int j) const noexcept {
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
   if (piece[a] != piece[b]) return Matrix3::Zero();
   const auto p = static_cast<std::size_t>(piece[a]);
-  Matrix3 c = cross_matrix(arm[a]) * (by_moment[p] * cross_matrix(arm[b]));
-  c = -1.0 * c;
+  Matrix3 c = -1.0 * (detail::cross_matrix(arm[a]) * (by_moment[p] * detail::cross_matrix(arm[b])));
   for (int k = 0; k < 3; ++k) c(k, k) += by_force[p];
   return c;
 }
@@ -74,25 +77,40 @@ PALPATE_INLINE int MovingPieces::add(DetachedPiece piece, const Vector3& velocit
         raise(SetupErrorKind::index_out_of_range,
               "a triangle with point " + std::to_string(v) + " of a piece with " + std::to_string(points));
   const std::scoped_lock lock(changes_);
-  insert(std::move(piece), velocity);
+  Piece made = make_piece(std::move(piece), velocity);
+  reserve({&made, 1});
+  insert(std::move(made));
   return static_cast<int>(pieces_.size()) - 1;
 }
 
 /// Velocities are those in the middle between two steps, so that a step is exact in free flight.
-PALPATE_INLINE void MovingPieces::insert(DetachedPiece given, const Vector3& velocity) {
+PALPATE_INLINE MovingPieces::Piece MovingPieces::make_piece(DetachedPiece given, const Vector3& velocity) const {
   Piece piece;
   piece.shape = std::make_shared<const DetachedPiece>(std::move(given));
   const DetachedPiece& shape = *piece.shape;
   piece.now.centre = shape.centre;
   piece.inverse_inertia = inverse(shape.inertia);
   piece.velocity = velocity - 0.5 * parameters_.step * parameters_.gravity;
-  piece.first = piece_of_.size();
   for (const Vector3& p : shape.points) {
     piece.arms.push_back(p - shape.centre);
     piece.radius = std::max(piece.radius, piece.arms.back().norm());
   }
   predict(piece);
-  piece_of_.insert(piece_of_.end(), shape.points.size(), static_cast<int>(pieces_.size()));
+  return piece;
+}
+
+/// Allocates room for more pieces.
+PALPATE_INLINE void MovingPieces::reserve(std::span<const Piece> more) {
+  std::size_t vertices = piece_of_.size();
+  for (const Piece& piece : more) vertices += piece.arms.size();
+  piece_of_.reserve(vertices);
+  pieces_.reserve(pieces_.size() + more.size());
+}
+
+/// After `reserve`.
+PALPATE_INLINE void MovingPieces::insert(Piece&& piece) noexcept {
+  piece.first = piece_of_.size();
+  piece_of_.insert(piece_of_.end(), piece.arms.size(), static_cast<int>(pieces_.size()));
   pieces_.push_back(std::move(piece));
   changed_ = true;
 }
@@ -139,12 +157,16 @@ PALPATE_INLINE void MovingPieces::take_pieces(const void* tissue) {
   for (const Source& source : sources_) {
     if (source.tissue != tissue) continue;
     std::vector<Index> elements;
+    std::vector<Piece> found;
     for (DetachedPiece& piece : source.find()) {
       elements.insert(elements.end(), piece.elements.begin(), piece.elements.end());
-      insert(std::move(piece), Vector3::Zero());
-      pieces_.back().is_fresh = false;  // shown before the next step
+      found.push_back(make_piece(std::move(piece), Vector3::Zero()));
+      found.back().is_fresh = false;  // shown before the next step
     }
-    if (!elements.empty()) source.remove(elements);
+    if (found.empty()) continue;
+    reserve(found);
+    source.remove(elements);  // the last call that may throw: afterwards all pieces are here
+    for (Piece& piece : found) insert(std::move(piece));
   }
   if (!changed_) return;
   make_surface();
@@ -172,31 +194,31 @@ PALPATE_INLINE void MovingPieces::add_loads(std::span<const VertexForce> forces,
 /// The present step, for the forces at its end. Tissue moves the piece out of its way, but no part of its impulse makes
 /// the piece leave faster than it would without: the energy does not grow.
 PALPATE_INLINE void MovingPieces::correct(Piece& piece, const Load& tools, const Load& others) const noexcept {
-  const double h = parameters_.step, by_force = h * piece.part / piece.shape->mass;
+  const double h = parameters_.step, by_force = h * piece.mobility / piece.shape->mass;
   const Matrix3 inverse = inverse_inertia(piece, piece.free.rotation);
   const Vector3 velocity = (piece.free.centre - piece.now.centre) / h + by_force * tools.force;
-  const Vector3 momentum = piece.angular_momentum + h * piece.part * tools.moment;
-  Vector3 pushed = velocity + by_force * others.force, twisted = momentum + h * piece.part * others.moment;
+  const Vector3 momentum = piece.angular_momentum + h * piece.mobility * tools.moment;
+  Vector3 pushed = velocity + by_force * others.force, twisted = momentum + h * piece.mobility * others.moment;
   slow_down(piece, others.force, pushed, twisted);
   piece.now.centre += h * pushed;
   piece.now.rotation = rotation_by(h * (inverse * (twisted - piece.angular_momentum))) * piece.free.rotation;
 
   const double before = others.force.dot(velocity) + others.moment.dot(inverse * momentum);
   const double change =
-      by_force * others.force.squaredNorm() + h * piece.part * others.moment.dot(inverse * others.moment);
+      by_force * others.force.squaredNorm() + h * piece.mobility * others.moment.dot(inverse * others.moment);
   const double used = change > 0.0 ? std::clamp(-before / change, 0.0, 1.0) : 0.0;
   piece.velocity = velocity + used * by_force * others.force;
-  piece.angular_momentum = momentum + used * h * piece.part * others.moment;
+  piece.angular_momentum = momentum + used * h * piece.mobility * others.moment;
   slow_down(piece, others.force, piece.velocity, piece.angular_momentum);
   piece.after_tool = tools.force.squaredNorm() > 0.0 ? steps_after_tool : std::max(0, piece.after_tool - 1);
   const double compliance = h * h / piece.shape->mass;
-  piece.part = piece.after_tool > 0 ? std::min(1.0, largest_compliance / compliance) : 1.0;
+  piece.mobility = piece.after_tool > 0 ? std::min(1.0, largest_compliance / compliance) : 1.0;
 }
 
 /// Coulomb friction of the resulting force of the tissue.
 PALPATE_INLINE void MovingPieces::slow_down(const Piece& piece, const Vector3& force, Vector3& velocity,
                                             Vector3& angular_momentum) const noexcept {
-  const double magnitude = force.norm(), impulse = parameters_.friction * parameters_.step * piece.part * magnitude;
+  const double magnitude = force.norm(), impulse = parameters_.friction * parameters_.step * piece.mobility * magnitude;
   if (!(impulse > 0.0)) return;
   const Vector3 normal = force / magnitude;
   const auto slow = [](Vector3& value, const Vector3& part, double most) {
@@ -212,7 +234,7 @@ PALPATE_INLINE void MovingPieces::slow_down(const Piece& piece, const Vector3& f
 /// The rotation is that of the velocity in the middle of the step (explicit midpoint rule).
 PALPATE_INLINE void MovingPieces::predict(Piece& piece) const noexcept {
   const double h = parameters_.step;
-  piece.free.centre = piece.now.centre + h * (piece.velocity + h * piece.part * parameters_.gravity);
+  piece.free.centre = piece.now.centre + h * (piece.velocity + h * piece.mobility * parameters_.gravity);
   const auto spin = [&](const Matrix3& rotation) {
     return Vector3(inverse_inertia(piece, rotation) * piece.angular_momentum);
   };
@@ -282,8 +304,8 @@ PALPATE_INLINE void MovingPieces::publish() {
   double largest = 0.0, smallest = infinity;
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     const Piece& piece = pieces_[p];
-    view.by_force[p] = piece.part * squared / piece.shape->mass;
-    view.by_moment[p] = piece.part * squared * inverse_inertia(piece, piece.free.rotation);
+    view.by_force[p] = piece.mobility * squared / piece.shape->mass;
+    view.by_moment[p] = piece.mobility * squared * inverse_inertia(piece, piece.free.rotation);
     for (std::size_t k = 0; k < piece.arms.size(); ++k) {
       const std::size_t v = piece.first + k;
       view.arm[v] = piece.free.rotation * piece.arms[k];
@@ -311,15 +333,7 @@ PALPATE_INLINE Status MovingPieces::begin_tick() noexcept {
 
 PALPATE_INLINE void MovingPieces::end_tick(std::span<const VertexForce> forces, std::span<const PointForce>) noexcept {
   Forces& out = given_.back();
-  out.count = 0;
-  ticked_ = {};
-  for (const VertexForce& f : forces)
-    if (!all_finite(f.force.in_model_axes()))
-      ticked_.set(StatusFlag::non_finite_force);
-    else if (out.count < out.item.size())
-      out.item[out.count++] = f;
-    else
-      ticked_.set(StatusFlag::degraded_model);
+  ticked_ = detail::copy_finite(forces, out.item, out.count);
   given_.publish();
 }
 

@@ -30,7 +30,7 @@ class InterfaceProblem {
   void load(std::size_t body, std::span<const VertexForce> tools);
   /// Finds the forces for these loads. Flags solver_not_converged, degraded_model (more rows than the capacity),
   /// large_displacement (bodies overlap at rest by a tenth of the thinner one), lost_contact (a vertex or an edge is
-  /// inside another body) and coarse_contact (few rows press: the surfaces are too coarse for the contact).
+  /// inside another body or part) and coarse_contact (few rows press: the surfaces are too coarse for the contact).
   Status solve();
 
   struct Row {
@@ -83,7 +83,6 @@ class InterfaceProblem {
     Bvh bvh{};
     double facet_length = 0.0, deepest = 0.0;  // mean; largest of depths
     double path = 0.0;                         // of parts, from the last solution without forces of rows [m]
-    double room = 0.0;                         // the same during all of a solution
     std::uint64_t revision = 0, number = 0;    // of the surface; of its triangles
     std::vector<double>
         closed_gap{};  // per vertex: the mean gap of its row that presses, or is negative; else infinite
@@ -99,7 +98,7 @@ class InterfaceProblem {
   void renew(std::size_t body);
   double move_bodies();
   bool keeps_shape() const noexcept;
-  void find_rows();
+  void find_rows(bool along_paths);
   void find_responses();
   void limit_rows(Status& status);
   void assemble();
@@ -111,7 +110,8 @@ class InterfaceProblem {
     std::array<double, 3> weights{};
     Vector3 normal = Vector3::Zero();
   };
-  NearestFacet find_nearest(const Body& other, const Vector3& p) const noexcept;
+  /// `except`: a part whose facets do not count; -1 for none.
+  NearestFacet find_nearest(const Body& other, const Vector3& p, Index except = -1) const noexcept;
   NearestFacet find_opposite(const Body& own, const Body& other, int v) const noexcept;
   void add_entered(std::size_t own, std::size_t other);
   /// Where an edge goes through another body: the middle of that part, and the nearest way out.
@@ -134,6 +134,7 @@ class InterfaceProblem {
   bool overlap_at_rest();
   bool is_coarse() const noexcept;
   bool has_entered() const noexcept;
+  bool parts_have_entered(const Body& body) const noexcept;
   void factor_pressing();
 
   std::vector<Body> bodies_;

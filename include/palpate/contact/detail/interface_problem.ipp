@@ -114,15 +114,10 @@ PALPATE_INLINE bool InterfaceProblem::find_paths() noexcept {
   constexpr double considerable = 0.25;  // of a mean facet
   bool found = false;
   for (Body& body : bodies_) {
-    body.path = body.room = 0.0;
-    if (body.parts.empty()) continue;
-    for (std::size_t v = 0; v < body.base.size(); ++v)
+    body.path = 0.0;
+    for (std::size_t v = 0; v < body.base.size() && !body.parts.empty(); ++v)
       body.path = std::max(body.path, (body.pose * body.base[v] - body.now[v]).norm());
-    body.room = body.path;
-    if (body.path < considerable * body.facet_length)
-      body.path = 0.0;
-    else
-      found = true;
+    found = found || body.path > considerable * body.facet_length;
   }
   return found;
 }
@@ -152,7 +147,7 @@ PALPATE_INLINE double InterfaceProblem::move_bodies() {
 PALPATE_INLINE bool InterfaceProblem::keeps_shape() const noexcept {
   for (const Body& body : bodies_) {
     if (body.triangles.empty()) continue;  // all of it has been cut away
-    const double size = body.tissue.surface().bvh().bounds().size().norm() + body.room;
+    const double size = body.tissue.surface().bvh().bounds().size().norm() + body.path;
     for (std::size_t v = 0; v < body.now.size(); ++v)
       if (!((body.now[v] - body.pose * body.base[v]).norm() <= size)) return false;
   }
@@ -171,7 +166,7 @@ inline bool is_like(const InterfaceRow& a, const InterfaceRow& b) noexcept {
 }
 
 /// The surface with shorter facets has the rows.
-PALPATE_INLINE void InterfaceProblem::find_rows() {
+PALPATE_INLINE void InterfaceProblem::find_rows(bool along_paths) {
   constexpr double reach = 0.25;  // of a mean facet: what may touch in the next linearisation
   geometry_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
@@ -180,7 +175,7 @@ PALPATE_INLINE void InterfaceProblem::find_rows() {
       if (!touches || bodies_[k].triangles.empty() || bodies_[l].triangles.empty()) continue;
       const bool first = bodies_[k].facet_length <= bodies_[l].facet_length;
       const InterfaceSurface one = surface(first ? k : l), two = surface(first ? l : k);
-      const double paths = bodies_[k].path + bodies_[l].path;
+      const double paths = along_paths ? bodies_[k].path + bodies_[l].path : 0.0;
       geometry_.add(one, two, reach * std::min(bodies_[k].facet_length, bodies_[l].facet_length) + paths);
     }
   note_closed(geometry_.rows());
@@ -301,10 +296,11 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
   bool solved = true, is_dropped = false;
   if (std::exchange(moved_at_rest_, false)) overlaps_ = overlap_at_rest();
   find_responses();  // of rows at surfaces that have changed
-  if (!find_paths()) move_bodies();
+  const bool along_paths = find_paths();
+  if (!along_paths) move_bodies();
   for (int i = 0; i < most_linearisations && change > tolerance; ++i) {
     status = {};
-    find_rows();
+    find_rows(along_paths && i == 0);
     limit_rows(status);
     find_responses();
     assemble();
@@ -315,7 +311,6 @@ PALPATE_INLINE Status InterfaceProblem::solve() {
       is_dropped = true;
       move_bodies();
     }
-    for (Body& body : bodies_) body.path = 0.0;
   }
   if (!solved || is_dropped || change > flagged) status.set(StatusFlag::solver_not_converged);
   if (has_entered()) status.set(StatusFlag::lost_contact);

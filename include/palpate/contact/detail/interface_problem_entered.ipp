@@ -10,8 +10,8 @@
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
-PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(const Body& other,
-                                                                             const Vector3& p) const noexcept {
+PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(const Body& other, const Vector3& p,
+                                                                             Index except) const noexcept {
   constexpr double across = 0.7;  // cosine from the normal of the nearest facet: not beside a rim
   constexpr double close = 1e-3;  // of a mean facet: no direction is known
   const double most = std::max(other.facet_length, 2.0 * other.deepest);
@@ -22,7 +22,9 @@ PALPATE_INLINE InterfaceProblem::NearestFacet InterfaceProblem::find_nearest(con
     return Vector3(p - (w[0] * corner(t, 0) + w[1] * corner(t, 1) + w[2] * corner(t, 2)));
   };
   NearestFacet found;
-  found.facet = other.bvh.nearest(p, [&](int t) { return from(t, weights(t)).squaredNorm(); });
+  found.facet = other.bvh.nearest(p, [&](int t) {
+    return except >= 0 && other.parts[at(t)] == except ? infinity : from(t, weights(t)).squaredNorm();
+  });
   if (found.facet < 0) return {};
   found.weights = weights(found.facet);
   const Vector3 path = from(found.facet, found.weights), first = corner(found.facet, 0);
@@ -191,9 +193,21 @@ PALPATE_INLINE void InterfaceProblem::add_crossings(std::size_t k, std::size_t l
   }
 }
 
+/// Whether a vertex of a part is inside another part.
+PALPATE_INLINE bool InterfaceProblem::parts_have_entered(const Body& body) const noexcept {
+  constexpr double allowed = 0.03;  // of a mean facet
+  for (int v = 0; v < static_cast<int>(body.now.size()) && !body.parts.empty(); ++v) {
+    const auto facets = body.tissue.surface().triangles_at(v);
+    if (!facets.empty() &&
+        find_nearest(body, body.now[at(v)], body.parts[at(facets.front())]).height < -allowed * body.facet_length)
+      return true;
+  }
+  return false;
+}
+
 PALPATE_INLINE bool InterfaceProblem::has_entered() const noexcept {
   constexpr double beside_closed = 0.03, elsewhere = 0.01;  // allowed, of a mean facet
-  bool found = false;
+  bool found = std::ranges::any_of(bodies_, [this](const Body& body) { return parts_have_entered(body); });
   for (const Body& own : bodies_)
     for (const Body& other : bodies_) {
       if (&own == &other || found) continue;

@@ -429,15 +429,7 @@ PALPATE_INLINE Status MovingTissue::begin_tick() noexcept {
 PALPATE_INLINE void MovingTissue::end_tick(std::span<const VertexForce> forces,
                                            std::span<const PointForce> points) noexcept {
   Forces& out = pressing_.back();
-  out.count = 0;
-  ticked_ = {};
-  for (const VertexForce& f : forces)
-    if (!all_finite(f.force.in_model_axes()))
-      ticked_.set(StatusFlag::non_finite_force);
-    else if (out.count < most_forces)
-      out.item[out.count++] = f;
-    else
-      ticked_.set(StatusFlag::degraded_model);
+  ticked_ = detail::copy_finite(forces, out.item, out.count);
   out.points = 0;
   const auto is_finite = [](const PointForce& p) { return all_finite(p.force.in_model_axes()); };
   if (points.size() <= most_points && std::all_of(points.begin(), points.end(), is_finite))
