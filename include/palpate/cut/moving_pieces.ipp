@@ -194,7 +194,10 @@ PALPATE_INLINE void MovingPieces::add_loads(std::span<const VertexForce> forces,
 /// The present step, for the forces at its end. Tissue moves the piece out of its way, but no part of its impulse makes
 /// the piece leave faster than it would without: the energy does not grow.
 PALPATE_INLINE void MovingPieces::correct(Piece& piece, const Load& tools, const Load& others) const noexcept {
-  const double h = parameters_.step, by_force = h * piece.mobility / piece.shape->mass;
+  const double h = parameters_.step, compliance = h * h / piece.shape->mass;
+  piece.after_tool = tools.force.squaredNorm() > 0.0 ? steps_after_tool : std::max(0, piece.after_tool - 1);
+  piece.mobility = piece.after_tool > 0 ? std::min(1.0, largest_compliance / compliance) : 1.0;
+  const double by_force = h * piece.mobility / piece.shape->mass;
   const Matrix3 inverse = inverse_inertia(piece, piece.free.rotation);
   const Vector3 velocity = (piece.free.centre - piece.now.centre) / h + by_force * tools.force;
   const Vector3 momentum = piece.angular_momentum + h * piece.mobility * tools.moment;
@@ -210,9 +213,6 @@ PALPATE_INLINE void MovingPieces::correct(Piece& piece, const Load& tools, const
   piece.velocity = velocity + used * by_force * others.force;
   piece.angular_momentum = momentum + used * h * piece.mobility * others.moment;
   slow_down(piece, others.force, piece.velocity, piece.angular_momentum);
-  piece.after_tool = tools.force.squaredNorm() > 0.0 ? steps_after_tool : std::max(0, piece.after_tool - 1);
-  const double compliance = h * h / piece.shape->mass;
-  piece.mobility = piece.after_tool > 0 ? std::min(1.0, largest_compliance / compliance) : 1.0;
 }
 
 /// Coulomb friction of the resulting force of the tissue.
