@@ -83,7 +83,7 @@ std::array<double, 3> masses(const Organ& tissue) {
   std::array<double, 3> mass{};
   tissue.read([&](const auto& topology, const auto& physics) {
     for (Index e = 0; e < topology.mesh().element_count(); ++e)
-      mass[static_cast<std::size_t>(topology.state(e))] += physics.mass(e);
+      mass[static_cast<std::size_t>(topology.state(e))] += physics.mass(topology.part(e));
   });
   return mass;
 }

@@ -201,7 +201,8 @@ TEST_CASE("overstretched remains of a cut are left out of contact and reported, 
 
 TEST_CASE("a cut under the tool: the force continues, and its rate of change is limited by the gate",
           "[cut][extreme][F3]") {
-  Tissue tissue(slab(), constrained_below(), soft);
+  const CutParameters faces{.cuttable = {}, .straight = false};  // vertices under the tool stay where they are
+  Tissue tissue(slab(), constrained_below(), soft, {}, faces);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   double time = 0.0, before = 0.0, longest_step = 0.0;
@@ -236,7 +237,7 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   CHECK(last.norm() < (1.0 + of_points) * before);
   CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
   // The rendered force equals that of a new session on the cut body.
-  Tissue fresh(slab(), constrained_below(), soft);
+  Tissue fresh(slab(), constrained_below(), soft, {}, faces);
   fresh.cut(slit_at(0.052, 0.012));
   fresh.process_cuts();
   fresh.begin_tick();
@@ -320,7 +321,7 @@ TEST_CASE("cut while touched until nothing is left: all forces finite and limite
   testing::Random random(3);
   double time = 0.0, whole = 0.0, left = 1.0;
   tissue.read([&](const auto& t, const auto& p) {
-    for (Index e = 0; e < t.mesh().element_count(); ++e) whole += p.mass(e);
+    for (Index e = 0; e < t.mesh().element_count(); ++e) whole += p.mass(t.part(e));
   });
   Vector3 last = Vector3::Zero();
   int cuts = 0;
@@ -353,7 +354,7 @@ TEST_CASE("cut while touched until nothing is left: all forces finite and limite
       for (Index e = 0; e < t.mesh().element_count(); ++e)
         (t.state(e) == ElementState::supported  ? supported
          : t.state(e) == ElementState::detached ? detached
-                                                : removed) += p.mass(e);
+                                                : removed) += p.mass(t.part(e));
     });
     REQUIRE(std::abs(supported + detached + removed - whole) < 1e-12 * whole);
     left = supported + detached;

@@ -60,10 +60,10 @@ void masses(Cut& tissue, double whole, double& left, ManyCuts& all) {
     for (Index e = 0; e < t.mesh().element_count(); ++e)
       (t.state(e) == ElementState::supported  ? constrained
        : t.state(e) == ElementState::detached ? detached
-                                              : removed) += p.mass(e);
+                                              : removed) += p.mass(t.part(e));
     for (const detail::Fragment& piece : t.detached_fragments()) {
       for (const Index e : piece.elements)
-        if (!t.is_removed(e)) pieces += p.mass(e);
+        if (!t.is_removed(e)) pieces += p.mass(t.part(e));
       all.detached = std::max(all.detached, static_cast<int>(t.detached_fragments().size()));
     }
   });
@@ -82,7 +82,7 @@ void cut_apart(int kind, std::uint64_t seed, int most, ManyCuts& all) {
   testing::Random random(seed);
   double whole = 0.0, left = 1.0, time = 0.0;
   tissue.read([&](const auto& t, const auto& p) {
-    for (Index e = 0; e < t.mesh().element_count(); ++e) whole += p.mass(e);
+    for (Index e = 0; e < t.mesh().element_count(); ++e) whole += p.mass(t.part(e));
   });
   Vector3 last = Vector3::Zero(), x = mesh.position(0);
   ++all.bodies;

@@ -14,6 +14,9 @@ struct CutParameters {
   /// Group, region, nodes or set of points whose compliance is stored in addition to that of the touchable ones: cuts
   /// there need no solve.
   std::optional<Selection> cuttable{};
+  /// Blades cut Tet4 where they pass: nodes beside the sheet are moved onto it at rest, and edges divided. Otherwise,
+  /// and for other elements, cuts follow the faces nearest to the sheet, and change fewer rows.
+  bool straight = true;
   Index most_added = 900;          ///< dofs that cuts may add before a new factor is made in a background thread
   double tolerated_error = 1e-10;  ///< relative, as measured; beyond it a new factor is made immediately
 };
@@ -33,7 +36,9 @@ struct CutReport {
   /// Largest displacement of a touchable vertex by the scene's loads, against their mean, relative to the body's
   /// diagonal. Above 0.1 ticks report large_displacement: usually a remnant that hangs on a few faces.
   double displacement = 0.0;
-  bool failed = false;  ///< remaining body cannot be computed; the last good state is rendered, degraded_model
+  double off_sheet = 0.0;  ///< of the last cut: farthest node of its walls from the sheet of the blade [m]
+  double quality = 1.0;    ///< least quality (ElementShape) of the elements that cuts have changed
+  bool failed = false;     ///< remaining body cannot be computed; the last good state is rendered, degraded_model
 };
 
 }}  // namespace palpate

@@ -6,6 +6,7 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/setup_error.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/cut/detail/element_graph.hpp>
 #include <palpate/cut/detail/fragments.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/detail/face_ids.hpp>
@@ -15,18 +16,15 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI {
 
-/// State of an element.
-enum class ElementState : std::uint8_t { supported, detached, removed };
-
-/// A mesh under a sequence of cuts. Ids of nodes and elements never change: nodes created by a cut are appended, and
-/// removed elements keep their id. Elements never change their shape, so no cut makes a sliver.
+/// A mesh under a sequence of cuts. Ids of nodes and elements never change: those created by a cut are appended, and
+/// removed elements keep their id.
 ///
 /// After every cut the elements around a node are connected by faces that contain it; otherwise the node is split, one
 /// copy per part (as in Serby et al. 2001 and Lindblad and Turkiyyah 2007, here for all kinds of cuts). So no two parts
@@ -34,40 +32,53 @@ enum class ElementState : std::uint8_t { supported, detached, removed };
 /// fragment can move as a whole or not at all. Unsupported parts are therefore found by counting, not by a failing
 /// solve.
 template <Element E>
-class CutTopology {
+class CutTopology : public detail::ElementGraph<E> {
  public:
-  static constexpr std::size_t faces = E::faces.size();
-  using Connectivity = typename Mesh<E>::Connectivity;
+  using Graph = detail::ElementGraph<E>;
+  using Graph::face_nodes;
+  using Graph::faces;
+  using Graph::is_removed;
+  using Graph::mesh;
+  using Graph::origin_of;
+  using Graph::origin_of_element;
+  using Graph::state;
+  using typename Graph::Connectivity;
 
   /// `constrained` has bit c set if component c of a node is prescribed; copies inherit it. Splits nodes at which parts
   /// of the given mesh touch. Throws non_manifold. O(elements log elements).
-  CutTopology(Mesh<E> mesh, std::vector<std::uint8_t> constrained)
-      : mesh_(std::move(mesh)), constrained_(std::move(constrained)) {
-    if (constrained_.size() != mesh_.positions.size())
-      raise(SetupErrorKind::bad_argument, "nodes and constraints differ in number");
-    find_neighbours();
-    find_stars();
+  CutTopology(Mesh<E> given, std::vector<std::uint8_t> constrained)
+      : Graph(std::move(given), std::move(constrained)), bare_(mesh_.positions.size(), 0) {
     list_group_faces();
-    parent_.resize(mesh_.positions.size());
-    std::iota(parent_.begin(), parent_.end(), NodeId{0});
-    copied_from_ = parent_;
-    state_.assign(static_cast<std::size_t>(mesh_.element_count()), ElementState::supported);
     detail::TopologyChange<E> split;
     for (NodeId node = 0, count = static_cast<NodeId>(mesh_.node_count()); node < count; ++node)
       split_star(node, split);
     detach(split);
   }
 
-  /// Applies an order. Throws index_out_of_range before any change. O(elements) to find fragments, little else.
+  /// Applies an order. Throws as `apply_all`. O(elements) to find fragments, little else.
   detail::TopologyChange<E> apply(const CutOrder& order) {
-    require_valid(order);
+    return apply_all([&](auto&& apply_one) { apply_one(order); });
+  }
+  /// Applies several orders as one cut: `orders(apply_one)` calls `apply_one(order)` for each CutOrder or
+  /// detail::ReshapingOrder, and may look at what the last one has made of this topology. Nodes are split after all of
+  /// them. Throws index_out_of_range before the change by the order that refers to what does not exist.
+  template <class Orders>
+  detail::TopologyChange<E> apply_all(Orders&& orders) {
     detail::TopologyChange<E> change;
     std::vector<NodeId> affected;
-    for (const Index e : order.remove) remove(e, affected, change);
-    for (const detail::ElementFace& f : order.open) open(f, affected);
+    orders([&]<class Order>(const Order& order) {
+      require_valid(order);
+      if constexpr (std::same_as<Order, detail::ReshapingOrder>) {
+        for (const detail::MovedNode& moved : order.move) this->move(moved, change);
+        for (const detail::DividedEdge& edge : order.divide) divide(edge, change);
+      }
+      for (const Index e : order.remove) remove(e, affected, change);
+      for (const detail::ElementFace& f : order.open) open(f, affected);
+    });
     std::ranges::sort(affected);
     affected.erase(std::unique(affected.begin(), affected.end()), affected.end());
     for (const NodeId node : affected) split_star(node, change);
+    bare_.resize(star_.size(), 0);
     for (const detail::ChangedElement<E>& x : change.elements)
       for (const NodeId node : x.before)
         if (star_[at(node)].empty() && std::exchange(bare_[at(node)], 1) == 0) change.bare_nodes.push_back(node);
@@ -77,25 +88,6 @@ class CutTopology {
     return change;
   }
 
-  /// The mesh with all ids, including removed elements, which keep their nodes.
-  const Mesh<E>& mesh() const noexcept { return mesh_; }
-  ElementState state(Index e) const noexcept { return state_[at(e)]; }
-  bool is_removed(Index e) const noexcept { return state(e) == ElementState::removed; }
-  const std::vector<std::uint8_t>& constrained() const noexcept { return constrained_; }
-  /// The node of the given mesh from which a node was copied; itself if it is not a copy.
-  NodeId origin_of(NodeId node) const noexcept { return parent_[at(node)]; }
-  /// The node from which a node was split; itself if it was not split.
-  NodeId copied_from(NodeId node) const noexcept { return copied_from_[at(node)]; }
-  /// Elements around a node, without removed ones.
-  const std::vector<Index>& elements_at(NodeId node) const noexcept { return star_[at(node)]; }
-  /// Neighbour element across a face, -1 on the surface and at an open face.
-  Index neighbour(Index e, std::size_t face) const noexcept { return neighbour_[at(e)][face]; }
-  /// Nodes of a face, outward.
-  detail::FaceIds<E> face_nodes(const detail::ElementFace& f) const {
-    return detail::face_ids<E>(mesh_, f.element, static_cast<std::size_t>(f.face));
-  }
-  /// Volume [m^3] by the element's quadrature.
-  double volume(Index e) const { return element_shape<E>(element_nodes<E>(mesh_, e)).volume; }
   const std::vector<detail::Fragment>& detached_fragments() const noexcept { return detached_; }
 
   /// The part in one state as a separate mesh, with groups and regions. `node_map` gets the new id of every node, -1 if
@@ -127,7 +119,16 @@ class CutTopology {
   }
 
  private:
-  static constexpr std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+  using Graph::add_node;
+  using Graph::at;
+  using Graph::changed;
+  using Graph::constrained_;
+  using Graph::face_towards;
+  using Graph::mesh_;
+  using Graph::neighbour_;
+  using Graph::star_;
+  using Graph::state_;
+  using Graph::walls_;
 
   void require_valid(const CutOrder& order) const {
     std::vector<std::int64_t> bad;
@@ -145,30 +146,22 @@ class CutTopology {
     raise(std::move(p));
   }
 
-  void find_neighbours() {
-    extract_boundary<E>(mesh_);  // throws for faces of three elements
-    neighbour_.assign(at(mesh_.element_count()), {});
-    for (auto& n : neighbour_) n.fill(-1);
-    const std::vector<detail::KeyedFace<E>> all = detail::sorted_faces<E>(mesh_);
-    for (std::size_t i = 0; i + 1 < all.size(); ++i)
-      if (all[i].key == all[i + 1].key) {
-        neighbour_[at(all[i].element)][at(all[i].local)] = all[i + 1].element;
-        neighbour_[at(all[i + 1].element)][at(all[i + 1].local)] = all[i].element;
-      }
+  void set_wall(const detail::ElementFace& f) {
+    walls_[at(f.element)] = static_cast<std::uint8_t>(walls_[at(f.element)] | 1u << f.face);
   }
-  void find_stars() {
-    star_.resize(mesh_.positions.size());
-    bare_.assign(mesh_.positions.size(), 0);
-    for (Index e = 0; e < mesh_.element_count(); ++e)
-      for (const NodeId node : mesh_.elements[at(e)]) star_[at(node)].push_back(e);
+  /// The lists of faces follow the halves of divided elements.
+  void divide(const detail::DividedEdge& edge, detail::TopologyChange<E>& change) {
+    const std::size_t known = change.followed.size();
+    Graph::divide(edge, change);
+    for (std::size_t k = known; k < change.followed.size(); ++k) {
+      const detail::FollowedFace& followed = change.followed[k];
+      detail::follow(followed, change.exposed);
+      for (auto& list : group_faces_) detail::follow(followed, list);
+      for (auto& sides : welded_)
+        for (detail::ElementFace& f : sides)
+          if (!followed.is_half && f == followed.from) f = followed.to;  // its edges are not divisible
+    }
   }
-  /// The face of element e towards `other`, -1 if they share no face.
-  int face_towards(Index e, Index other) const noexcept {
-    for (std::size_t f = 0; f < faces; ++f)
-      if (neighbour_[at(e)][f] == other) return static_cast<int>(f);
-    return -1;
-  }
-
   void remove(Index e, std::vector<NodeId>& affected, detail::TopologyChange<E>& change) {
     if (is_removed(e)) return;
     for (std::size_t f = 0; f < faces; ++f) {
@@ -176,15 +169,14 @@ class CutTopology {
       if (other < 0) continue;
       const int back = face_towards(other, e);
       neighbour_[at(other)][at(back)] = neighbour_[at(e)][f] = -1;
+      set_wall({other, back});
       change.exposed.push_back({other, back});
     }
-    const Connectivity& nodes = mesh_.elements[at(e)];
-    for (const NodeId node : nodes) {
+    for (const NodeId node : mesh_.elements[at(e)]) {
       std::erase(star_[at(node)], e);
       affected.push_back(node);
     }
-    auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
-    list.push_back({e, nodes, nodes, true});
+    changed(e, change).removed = true;
     state_[at(e)] = ElementState::removed;
     std::erase_if(change.exposed, [e](const detail::ElementFace& x) { return x.element == e; });
   }
@@ -195,6 +187,8 @@ class CutTopology {
     const int back = face_towards(other, f.element);
     neighbour_[at(f.element)][at(f.face)] = neighbour_[at(other)][at(back)] = -1;
     welded_.push_back({f, {other, back}});
+    set_wall(f);
+    set_wall({other, back});
     for (const NodeId node : face_nodes(f)) affected.push_back(node);
   }
 
@@ -204,24 +198,16 @@ class CutTopology {
     const auto parts = detail::star_parts(*this, node);
     if (parts.size() < 2) return;
     for (std::size_t k = 1; k < parts.size(); ++k) {
-      const auto copy = static_cast<NodeId>(mesh_.positions.size());
-      mesh_.positions.push_back(mesh_.position(node));
-      constrained_.push_back(constrained_[at(node)]);
-      parent_.push_back(parent_[at(node)]);
-      copied_from_.push_back(node);
-      bare_.push_back(0);
-      change.copies.push_back({copy, node});
+      const NodeId copy = add_node(mesh_.position(node), node, constrained_[at(node)], change);
       for (const Index e : parts[k]) reconnect(e, node, copy, change);
-      star_.push_back(parts[k]);
+      star_[at(copy)] = parts[k];
     }
     star_[at(node)] = parts[0];
   }
   void reconnect(Index e, NodeId from, NodeId to, detail::TopologyChange<E>& change) {
-    auto& list = state(e) == ElementState::supported ? change.elements : change.detached_elements;
-    auto found = std::ranges::find(list, e, &detail::ChangedElement<E>::element);
-    if (found == list.end()) found = list.insert(list.end(), {e, mesh_.elements[at(e)], {}, false});
+    detail::ChangedElement<E>& entry = changed(e, change);
     std::ranges::replace(mesh_.elements[at(e)], from, to);
-    found->after = mesh_.elements[at(e)];
+    entry.after = mesh_.elements[at(e)];
   }
 
   /// Exposes open faces whose two sides no longer share all nodes; until then they are not part of the surface.
@@ -271,64 +257,25 @@ class CutTopology {
       const Group& from = mesh_.groups.all()[g];
       Group& to = part.groups.get_or_add(from.name, from.dimension);
       for (std::size_t i = 0; i < node_map.size(); ++i)
-        if (node_map[i] >= 0 && std::ranges::binary_search(from.nodes, parent_[i])) to.nodes.push_back(node_map[i]);
+        if (node_map[i] >= 0 && std::ranges::binary_search(from.nodes, origin_of(static_cast<NodeId>(i))))
+          to.nodes.push_back(node_map[i]);
       for (const detail::ElementFace& f : group_faces_[g]) {
         if (place[at(f.element)] < 0) continue;
         std::vector<NodeId> nodes;
         for (const NodeId node : face_nodes(f)) nodes.push_back(node_map[at(node)]);
         to.faces.push_back(std::move(nodes));
       }
-      for (const Index e : from.elements)
-        if (place[at(e)] >= 0) to.elements.push_back(place[at(e)]);
+      for (std::size_t k = 0; k < element_map.size(); ++k)
+        if (std::ranges::binary_search(from.elements, origin_of_element(element_map[k])))
+          to.elements.push_back(static_cast<Index>(k));
     }
     part.groups.tidy();
   }
 
-  Mesh<E> mesh_;
-  std::vector<std::uint8_t> constrained_, bare_;
-  std::vector<std::array<Index, faces>> neighbour_;
-  std::vector<std::vector<Index>> star_;
-  std::vector<NodeId> parent_, copied_from_;
-  std::vector<ElementState> state_;
+  std::vector<std::uint8_t> bare_;
   std::vector<std::array<detail::ElementFace, 2>> welded_;
   std::vector<detail::Fragment> detached_;
   std::vector<std::vector<detail::ElementFace>> group_faces_;
 };
-
-namespace detail {
-
-/// All cuts between two states of one topology as a single change, for the part that was supported in `then`.
-/// O(elements).
-template <Element E>
-TopologyChange<E> difference(const CutTopology<E>& then, const CutTopology<E>& now) {
-  TopologyChange<E> change;
-  const auto old = static_cast<NodeId>(then.mesh().node_count());
-  const auto was_supported = [&](Index e) { return then.state(e) == ElementState::supported; };
-  for (Index e = 0; e < now.mesh().element_count(); ++e) {
-    if (!was_supported(e)) continue;
-    const auto& before = then.mesh().elements[static_cast<std::size_t>(e)];
-    const auto& after = now.mesh().elements[static_cast<std::size_t>(e)];
-    if (now.is_removed(e))
-      change.elements.push_back({e, before, before, true});
-    else if (before != after)
-      change.elements.push_back({e, before, after, false});
-  }
-  for (NodeId node = old; node < now.mesh().node_count(); ++node) {
-    NodeId parent = node;
-    while (parent >= old) parent = now.copied_from(parent);
-    change.copies.push_back({node, parent});
-  }
-  for (const ChangedElement<E>& x : change.elements)
-    for (const NodeId node : x.before)
-      if (now.elements_at(node).empty()) change.bare_nodes.push_back(node);
-  std::ranges::sort(change.bare_nodes);
-  const auto repeated = std::unique(change.bare_nodes.begin(), change.bare_nodes.end());
-  change.bare_nodes.erase(repeated, change.bare_nodes.end());
-  change.fragments =
-      connected_fragments(now, [&](Index e) { return was_supported(e) && now.state(e) == ElementState::detached; });
-  return change;
-}
-
-}  // namespace detail
 
 }}  // namespace palpate

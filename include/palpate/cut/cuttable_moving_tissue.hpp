@@ -14,7 +14,7 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/slit_sides.hpp>
-#include <palpate/cut/detail/swept_faces.hpp>
+#include <palpate/cut/detail/apply_orders.hpp>
 #include <palpate/model/detail/element_body.hpp>
 #include <palpate/model/moving/moving_tissue.hpp>
 
@@ -178,11 +178,12 @@ class CuttableMovingTissue : public MovingTissue {
     const CutTopology<E>& topology = body_->topology;
     VectorX sum = VectorX::Zero(3 * topology.mesh().node_count());
     sum.head(loads.nodal_load.size()) = loads.nodal_load;
-    for (Index e = 0; e < topology.mesh().element_count(); ++e)
-      if (topology.state(e) == ElementState::supported)
-        for (int a = 0; a < E::nodes; ++a)
-          add_node_vector(sum, Index{topology.mesh().element_node(e, a)},
-                          Vector3(loads.load[static_cast<std::size_t>(e)].row(a).transpose()));
+    for (Index e = 0; e < topology.mesh().element_count(); ++e) {
+      if (topology.state(e) != ElementState::supported) continue;
+      const ElementNodes<E> load = loads.applied_load(topology.part(e));
+      for (int a = 0; a < E::nodes; ++a)
+        add_node_vector(sum, Index{topology.mesh().element_node(e, a)}, Vector3(load.row(a).transpose()));
+    }
     return sum;
   }
   bool prepare_step() noexcept override {
@@ -212,9 +213,11 @@ class CuttableMovingTissue : public MovingTissue {
   }
   void apply(const detail::CutOrders::Taken& taken) {
     const auto start = std::chrono::steady_clock::now();
-    const detail::TopologyChange<E> change = body_->topology.apply(detail::combined(
-        taken, body_->topology, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_));
+    const auto [change, off_sheet] = detail::apply_orders(
+        body_->topology, taken, inverse(to_world()), [&](NodeId node) { return position(node); }, edges_,
+        detail::KeepElements());
     if (change.empty()) return;
+    report_.off_sheet = off_sheet;
     body_->surface.update(body_->topology, change);
     cut_motion_->follow(body_->topology);
     change_surface();

@@ -48,7 +48,7 @@ class CuttableTissue : public ModelBase {
 
   /// Orders a cut. Immediately throws index_out_of_range for invalid ids.
   void cut(CutOrder order) {
-    detail::require_ids<E>(order, elements_);
+    detail::require_ids<E>(order, elements_.load(std::memory_order_acquire));
     orders_.add(std::move(order));
   }
   /// Orders a cut along the sheet swept by a blade, in the world's frame, through the body deformed by its loads,
@@ -69,6 +69,7 @@ class CuttableTissue : public ModelBase {
       const detail::CutOrders::Taken& taken;
       ~Done() {
         tissue.failed_.store(tissue.process_->report().failed, std::memory_order_release);
+        tissue.elements_.store(tissue.process_->topology().mesh().element_count(), std::memory_order_release);
         if (taken.count > 0) tissue.orders_.done(taken);
       }
     } const done{*this, taken};
@@ -140,6 +141,7 @@ class CuttableTissue : public ModelBase {
     process_->reset(detail::boundary_of<E>(elastic_body()), scene());
     if (const detail::CutOrders::Taken taken = orders_.take(); taken.count > 0) orders_.done(taken);
     failed_.store(false, std::memory_order_release);
+    elements_.store(process_->topology().mesh().element_count(), std::memory_order_release);
     loaded_ = scene();
     place(Eigen::Isometry3d::Identity());
     keep_loads(scene().gravity(), others);
@@ -235,7 +237,7 @@ class CuttableTissue : public ModelBase {
     const ScopedIdTranslation translation(original_ids());
     elastic_body().report_locking(setup_report());
     const Body<E>& body = detail::body_of<E>(elastic_body());
-    elements_ = body.mesh.element_count();
+    elements_.store(body.mesh.element_count(), std::memory_order_release);
     loaded_ = this->scene();
     std::optional<Selection> cuttable;
     if (parameters.cuttable) cuttable = palpate::mapped(*parameters.cuttable, node_map(), origin());
@@ -266,7 +268,7 @@ class CuttableTissue : public ModelBase {
 
   std::vector<Triangle> triangles_;  // touchable before any cut
   Scene loaded_;                     // the last scene set; its gravity is not used
-  Index elements_ = 0;
+  std::atomic<Index> elements_{0};
   mutable std::mutex changes_;
   detail::CutOrders orders_;
   detail::CutServed served_;

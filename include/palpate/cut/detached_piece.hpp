@@ -108,7 +108,7 @@ std::vector<DetachedPiece> detached_pieces(HapticFEModel<E, M, Solver>& model) {
         std::array<Vector3, E::nodes> at;
         for (int a = 0; a < E::nodes; ++a)
           at[static_cast<std::size_t>(a)] = position_of(static_cast<NodeId>(mesh.element_node(e, a))) - origin;
-        const double density = body.density[body.region_of(e)];
+        const double density = body.density[body.region_of(topology.origin_of_element(e))];
         detail::add_element<E>(at, density * detail::element_mass<E>(element_nodes<E>(mesh, e)), piece);
       }
       if (!(piece.mass > 0.0))

@@ -52,7 +52,7 @@ class CutBase {
                       {}};
     if (!physics.body.materials.empty())
       for (const Index e : element_map)
-        supported.materials.push_back(physics.body.materials[static_cast<std::size_t>(e)]);
+        supported.materials.push_back(physics.body.materials[static_cast<std::size_t>(topology.origin_of_element(e))]);
     const EssentialConditions conditions =
         constrained_conditions(topology, physics, node_map, supported.mesh.node_count());
     place_.assign(3 * node_map.size(), -1);
@@ -171,11 +171,13 @@ class CutBase {
     VectorX full(conditions.prescribed.size()), load(size_);
     k.apply(conditions.prescribed, full);
     full = -full;
-    for (Index e = 0; e < topology.mesh().element_count(); ++e)
-      if (topology.state(e) == ElementState::supported)
-        for (int a = 0; a < E::nodes; ++a)
-          full.template segment<3>(3 * Index{node_map[static_cast<std::size_t>(topology.mesh().element_node(e, a))]}) +=
-              physics.load[static_cast<std::size_t>(e)].row(a).transpose();
+    for (Index e = 0; e < topology.mesh().element_count(); ++e) {
+      if (topology.state(e) != ElementState::supported) continue;
+      const auto own = physics.load_of(topology.part(e));
+      for (int a = 0; a < E::nodes; ++a)
+        full.template segment<3>(3 * Index{node_map[static_cast<std::size_t>(topology.mesh().element_node(e, a))]}) +=
+            own.template segment<3>(3 * a);
+    }
     for (Index i = 0; 3 * i < physics.nodal_load.size(); ++i)
       if (const NodeId node = node_map[static_cast<std::size_t>(i)]; node >= 0)
         full.template segment<3>(3 * Index{node}) += physics.nodal_load.template segment<3>(3 * i);

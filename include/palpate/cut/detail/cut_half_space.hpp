@@ -12,8 +12,8 @@
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// The compliance of points finer than facets after cuts: copies of a split node have that of the node, and nodes that
-/// were inside have none. Nodes that were split or lost an element are marked as changed. `nodes`: of the vertices,
-/// first those of `whole`, apart from copies; null if that is null. Allocates; O(elements).
+/// were inside have none. Nodes that were split, moved or made, or lost an element, are marked as changed. `nodes`: of
+/// the vertices, first those of `whole`, apart from copies; null if that is null. Allocates; O(elements).
 template <Element E>
 std::shared_ptr<const SubfacetCompliance> half_space_after_cuts(const std::shared_ptr<const SubfacetCompliance>& whole,
                                                                 const CutTopology<E>& topology,
@@ -25,7 +25,7 @@ std::shared_ptr<const SubfacetCompliance> half_space_after_cuts(const std::share
   bool any = false;
   const auto mark = [&](NodeId node) { changed[at(topology.origin_of(node))] = any = true; };
   for (NodeId node = 0; node < mesh.node_count(); ++node)
-    if (topology.copied_from(node) != node) mark(node);
+    if (topology.copied_from(node) != node || topology.is_moved(node)) mark(node);
   for (Index e = 0; e < mesh.element_count(); ++e)
     if (topology.is_removed(e)) std::ranges::for_each(mesh.elements[static_cast<std::size_t>(e)], mark);
   if (!any && nodes.size() == static_cast<std::size_t>(whole->vertex_count())) return whole;

@@ -29,7 +29,7 @@ class CutPlan {
   /// `displacement`: of all nodes before the cut, three per node.
   CutPlan(const CutTopology<E>& topology, const TopologyChange<E>& of, const CutPhysics<E>& physics,
           const CutBase<E>& base, const KeptDofs& kept, const VectorX& displacement)
-      : change(&of), physics_(&physics), kept_(&kept) {
+      : change(&of), topology_(&topology), physics_(&physics), kept_(&kept) {
     add_pins(topology, displacement);
     std::vector<NodeId> nodes;
     for (const ChangedElement<E>& x : change->elements)
@@ -56,15 +56,15 @@ class CutPlan {
       return p >= first_fresh ? p - first_fresh + static_cast<Index>(changed.size()) : row.at(p);
     };
     for (const ChangedElement<E>& x : change->elements) {
-      const ElementStiffness<E> k = physics_->stiffness(x.element);
-      const auto add = [&](const auto& nodes, double sign) {
+      const auto add = [&](const auto& nodes, const ElementPart<E>& part, double sign) {
+        const ElementStiffness<E> k = physics_->stiffness(part);
         const auto at = ElementChanges<E>::indices_of(nodes, find);
         for (std::size_t i = 0; i < at.size(); ++i)
           for (std::size_t j = 0; j < at.size(); ++j)
             if (at[i] >= 0 && at[j] >= 0) all(at[i], at[j]) += sign * k(static_cast<Index>(i), static_cast<Index>(j));
       };
-      add(x.before, -1.0);
-      if (!x.removed) add(x.after, 1.0);
+      if (!x.added) add(x.before, x.was, -1.0);
+      if (!x.removed) add(x.after, topology_->part(x.element), 1.0);
     }
     for (const Pin& pin : pins)
       for (int c = 0; c < 3; ++c)
@@ -82,7 +82,8 @@ class CutPlan {
   /// Pins all nodes of one element of each fragment, and nodes without elements.
   void add_pins(const CutTopology<E>& topology, const VectorX& displacement) {
     const auto pin = [&](NodeId node, double stiffness) {
-      const NodeId known = 3 * Index{node} < displacement.size() ? node : parent_of(node);
+      NodeId known = node;
+      while (3 * Index{known} >= displacement.size()) known = topology.copied_from(known);
       pins.push_back({node, stiffness, displacement.template segment<3>(3 * Index{known})});
     };
     for (const Fragment& fragment : change->fragments) {
@@ -94,17 +95,19 @@ class CutPlan {
           if (kept_->index_of(node, 0) >= 0 || 3 * Index{node} >= displacement.size()) ++known;
         if (known > most) best = e, most = known;
       }
-      const double stiffness = physics_->stiffness(best).trace() / (3.0 * E::nodes);
+      const double stiffness = mean_stiffness(topology.part(best));
       for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(best)]) pin(node, stiffness);
     }
     for (const NodeId node : change->bare_nodes)
       for (const ChangedElement<E>& x : change->elements)
-        if (std::ranges::find(x.before, node) != x.before.end()) {
-          pin(node, physics_->stiffness(x.element).trace() / (3.0 * E::nodes));
+        if (!x.added && std::ranges::find(x.before, node) != x.before.end()) {
+          pin(node, mean_stiffness(x.was));
           break;
         }
   }
-  NodeId parent_of(NodeId node) const { return std::ranges::find(change->copies, node, &NodeCopy::node)->parent; }
+  double mean_stiffness(const ElementPart<E>& part) const {
+    return physics_->stiffness(part).trace() / (3.0 * E::nodes);
+  }
   /// Numbers the dofs of a changed or new node.
   void number_dofs(NodeId node, bool is_fresh, const CutTopology<E>& topology, const CutBase<E>& base) {
     std::array<Index, 3> own{-1, -1, -1};
@@ -123,6 +126,7 @@ class CutPlan {
     if (added) places_[node] = own;
   }
 
+  const CutTopology<E>* topology_;
   const CutPhysics<E>* physics_;
   const KeptDofs* kept_;
   std::map<NodeId, std::array<Index, 3>> places_;  // of nodes with promoted or fresh dofs

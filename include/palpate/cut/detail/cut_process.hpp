@@ -3,6 +3,7 @@
 
 #include <palpate/core/detail/attempt.hpp>
 #include <palpate/cut/cut_parameters.hpp>
+#include <palpate/cut/detail/apply_orders.hpp>
 #include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_preparation.hpp>
@@ -13,7 +14,6 @@
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/cut_view.hpp>
 #include <palpate/cut/detail/resting_nodes.hpp>
-#include <palpate/cut/detail/swept_faces.hpp>
 
 #include <array>
 #include <chrono>
@@ -41,6 +41,9 @@ class CutProcess : public CutState<E> {
         whole_topology_(topology_),
         whole_surface_(touchable_),
         parameters_(parameters) {
+    constexpr double share = 0.5;  // of the quality of the worst element, which those of a cut may have
+    for (Index e = 0; e < topology_.mesh().element_count(); ++e)
+      least_quality_ = std::min(least_quality_, share * topology_.quality(e));
     remember();
   }
 
@@ -145,8 +148,11 @@ class CutProcess : public CutState<E> {
     const auto seconds = [&] {
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    const TopologyChange<E> change = topology_.apply(order_of(taken, local));
+    const auto [change, off_sheet] = apply(taken, local);
     if (change.empty()) return;
+    report_.off_sheet = off_sheet;
+    for (const ChangedElement<E>& x : change.elements)
+      if (!x.removed) report_.quality = std::min(report_.quality, topology_.quality(x.element));
     ++report_.cuts;
     ++report_.changes;
     rest_fragments(change);
@@ -178,6 +184,7 @@ class CutProcess : public CutState<E> {
       publish_exactly();
       report_.kept = system_.kept();
       report_.failed = is_behind_ = false;
+      due_.fill(true);
     }
     return behind;
   }
@@ -188,11 +195,12 @@ class CutProcess : public CutState<E> {
     report_.unchecked = 0;
   }
 
-  /// All orders as faces and elements. Blades cut the deformed body. Where cuts displace it too far for linear
-  /// elasticity, they cut it as it was deformed before.
-  CutOrder order_of(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
+  /// Blades cut the deformed body. Where cuts displace it too far for linear elasticity, they cut it as it was deformed
+  /// before.
+  AppliedOrders<E> apply(const CutOrders::Taken& taken, const Eigen::Isometry3d& local) {
     if (!taken.sweeps.empty()) {
-      if (std::exchange(is_due(Check::inside), false)) system_.recover();
+      if (is_due(Check::inside)) system_.recover();
+      is_due(Check::inside) = false;
       if (swept_.size() == 0 || report_.displacement <= largest_linear_displacement) {
         VectorX swept = displacement_beside_others();  // an assignment that finds no memory would leave it broken
         swept_.swap(swept);
@@ -204,7 +212,13 @@ class CutProcess : public CutState<E> {
       return Vector3(topology_.mesh().position(node) +
                      (resting_.rests(node) ? resting_.displacement(node) : node_vector(swept_, known)));
     };
-    return combined(taken, topology_, local, swept, edges_);
+    if constexpr (follows_sheets<E>)
+      if (parameters_.straight) {
+        const auto is_fixed = [&](NodeId node) { return physics_->has_own_condition(topology_.origin_of(node)); };
+        return apply_orders(topology_, taken, local, swept, edges_,
+                            FollowSheet<decltype(is_fixed)>{least_quality_, is_fixed});
+      }
+    return apply_orders(topology_, taken, local, swept, edges_, KeepElements());
   }
 
   VectorX displacement_beside_others() {
@@ -244,21 +258,22 @@ class CutProcess : public CutState<E> {
   bool check_next() {
     for (std::size_t k = 0; k < checks; ++k) {
       last_check_ = (last_check_ + 1) % checks;
-      if (!std::exchange(due_[last_check_], false)) continue;
-      switch (static_cast<Check>(last_check_)) {
-        case Check::error:
-          check_error();
-          break;
-        case Check::inside:
-          system_.recover();
-          break;
-        case Check::bounds:
-          publish_exactly();
-          break;
-      }
+      if (!due_[last_check_]) continue;
+      run_check(static_cast<Check>(last_check_));  // stays due when memory is short
+      due_[last_check_] = false;
       return true;
     }
     return false;
+  }
+  void run_check(Check check) {
+    switch (check) {
+      case Check::error:
+        return check_error();
+      case Check::inside:
+        return system_.recover();
+      case Check::bounds:
+        return publish_exactly();
+    }
   }
   void check_error() {
     measure();
@@ -312,6 +327,7 @@ class CutProcess : public CutState<E> {
   CutTopology<E> whole_topology_;
   CutSurface<E> whole_surface_;
   CutParameters parameters_;
+  double least_quality_ = 1.0;  // of elements after a cut
   RestingEdges edges_;
   std::vector<VertexForce> contact_forces_;  // of other tissues and tools
   VectorX swept_;                            // displacement of the nodes through which blades cut

@@ -9,6 +9,7 @@
 #include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/cut_system.hpp>
 #include <palpate/cut/cut_topology.hpp>
+#include <palpate/cut/detail/topology_difference.hpp>
 
 #include <atomic>
 #include <memory>

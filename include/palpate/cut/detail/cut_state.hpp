@@ -188,6 +188,7 @@ class CutState {
   ContactSurface make_surface(std::vector<Vector3> positions, double smallest_radius) const {
     std::vector<Triangle> triangles = touchable_.triangles();
     std::vector<Index> elements = touchable_.elements();
+    for (Index& e : elements) e = topology_.origin_of_element(e);
     erase_stretched(positions, ContactSamples::maximum_subdivision * smallest_radius, triangles, elements);
     ContactSurface surface(std::move(positions), std::move(triangles));
     surface.set_materials(contact_materials(physics_->body, elements));

@@ -48,6 +48,8 @@ class CutSurface {
 
   /// Applies a cut: adds exposed faces and split nodes, drops removed faces. O(boundary faces).
   void update(const CutTopology<E>& topology, const TopologyChange<E>& change) {
+    for (const FollowedFace& followed : change.followed)
+      for (auto* list : {&faces_, &others_}) follow(followed, *list);
     faces_.insert(faces_.end(), change.exposed.begin(), change.exposed.end());
     const auto is_gone = [&](const ElementFace& f) { return topology.state(f.element) != ElementState::supported; };
     std::erase_if(faces_, is_gone);

@@ -256,8 +256,7 @@ class CutSystem {
       displacement.template segment<3>(3 * Index{copy.node}) = displacement.template segment<3>(3 * Index{copy.parent});
     for (const auto* list : {&plan.promoted, &plan.fresh})
       for (const NodeDof& d : *list) dofs_.add(d);
-    for (const ChangedElement<E>& x : plan.change->elements)
-      changes_.add(x, physics_->stiffness(x.element), physics_->load_of(x.element));
+    for (const ChangedElement<E>& x : plan.change->elements) changes_.add(x, topology.part(x.element), *physics_);
     for (const auto& pin : plan.pins) changes_.add(pin);
     move(step, displacement);
     displacement_.swap(displacement);

@@ -4,6 +4,7 @@
 #include <palpate/concepts/element.hpp>
 #include <palpate/core/config.hpp>
 #include <palpate/core/types.hpp>
+#include <palpate/cut/detail/cut_physics.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/local/stiffness.hpp>
 #include <palpate/mesh/mesh.hpp>
@@ -11,13 +12,14 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 
 /// Difference between the current stiffness and the factorised one: minus the changed elements, plus those of them that
-/// still exist, on their current nodes, plus springs on unsupported parts. Dofs are looked up by `place(node,
-/// component)`, -1 for prescribed ones.
+/// still exist and their parts, on their current nodes and with their current shapes, plus springs on unsupported
+/// parts. Dofs are looked up by `place(node, component)`, -1 for prescribed ones.
 template <Element E>
 class ElementChanges {
  public:
@@ -27,9 +29,9 @@ class ElementChanges {
 
   struct Changed {
     Connectivity before{}, now{};
-    bool removed = false;
-    ElementStiffness<E> stiffness;
-    Values load;
+    bool added = false, removed = false;        // it was not in the factor; it is not there now
+    ElementStiffness<E> factorised, stiffness;  // in the factor, now
+    Values factorised_load, load;
   };
   /// A spring to the position of a node at the moment it lost its support. It keeps the fragment's dofs in the system
   /// and has no effect on other parts.
@@ -42,11 +44,23 @@ class ElementChanges {
   bool empty() const noexcept { return changed_.empty() && pins_.empty(); }
   const std::vector<Pin>& pins() const noexcept { return pins_; }
 
-  void add(const ChangedElement<E>& change, const ElementStiffness<E>& stiffness, const Values& load) {
+  /// `part`: as the element is now.
+  void add(const ChangedElement<E>& change, const ElementPart<E>& part, const CutPhysics<E>& physics) {
     auto [at, is_new] = changed_.try_emplace(change.element);
-    if (is_new) at->second = {change.before, change.after, change.removed, stiffness, load};
-    at->second.now = change.after;
-    at->second.removed = change.removed;
+    Changed& c = at->second;
+    if (is_new) {
+      c.before = change.before;
+      c.added = change.added;
+      if (!c.added) {
+        c.factorised = physics.stiffness(change.was);
+        c.factorised_load = physics.load_of(change.was);
+      }
+    }
+    c.now = change.after;
+    c.removed = change.removed;
+    if (c.removed) return;
+    c.stiffness = physics.stiffness(part);
+    c.load = physics.load_of(part);
   }
   void add(const Pin& pin) { pins_.push_back(pin); }
 
@@ -56,8 +70,7 @@ class ElementChanges {
     Before(const ElementChanges& all, const TopologyChange<E>& change) : pins_(all.pins_.size()) {
       for (const ChangedElement<E>& x : change.elements) {
         const auto at = all.changed_.find(x.element);
-        entries_.push_back(at == all.changed_.end() ? Entry{x.element, false, {}, false}
-                                                    : Entry{x.element, true, at->second.now, at->second.removed});
+        entries_.push_back({x.element, at == all.changed_.end() ? std::nullopt : std::optional(at->second)});
       }
     }
 
@@ -65,9 +78,7 @@ class ElementChanges {
     friend class ElementChanges;
     struct Entry {
       Index element;
-      bool known;
-      Connectivity now;
-      bool removed;
+      std::optional<Changed> before;
     };
     std::vector<Entry> entries_;
     std::size_t pins_;
@@ -77,9 +88,10 @@ class ElementChanges {
     for (const auto& entry : before.entries_) {
       const auto at = changed_.find(entry.element);
       if (at == changed_.end()) continue;
-      at->second.now = entry.now;
-      at->second.removed = entry.removed;
-      if (!entry.known) changed_.erase(at);
+      if (entry.before)
+        at->second = *entry.before;
+      else
+        changed_.erase(at);
     }
   }
 
@@ -104,8 +116,8 @@ class ElementChanges {
   template <class Place>
   void subtract_product(const MatrixX& x, MatrixX& y, Place&& place) const {
     for (const auto& [e, c] : changed_) {
-      add_product(c, c.before, 1.0, x, y, place);
-      if (!c.removed) add_product(c, c.now, -1.0, x, y, place);
+      if (!c.added) add_product(c.factorised, c.before, 1.0, x, y, place);
+      if (!c.removed) add_product(c.stiffness, c.now, -1.0, x, y, place);
     }
     for (const Pin& pin : pins_)
       for (int k = 0; k < 3; ++k)
@@ -118,15 +130,16 @@ class ElementChanges {
   void add_forces(Displacement&& u, Load&& load) const {
     for (const auto& entry : changed_) {
       const Changed& c = entry.second;
-      const auto scatter = [&](const Connectivity& nodes, double sign) {
+      const auto scatter = [&](const Connectivity& nodes, const ElementStiffness<E>& k, const Values& own,
+                               double sign) {
         Values ue;
         for (int a = 0; a < E::nodes; ++a) ue.template segment<3>(3 * a) = u(nodes[static_cast<std::size_t>(a)]);
-        const Values f = sign * (c.stiffness * ue - c.load);
+        const Values f = sign * (k * ue - own);
         for (int a = 0; a < E::nodes; ++a)
           load(nodes[static_cast<std::size_t>(a)], Vector3(f.template segment<3>(3 * a)));
       };
-      scatter(c.before, 1.0);
-      if (!c.removed) scatter(c.now, -1.0);
+      if (!c.added) scatter(c.before, c.factorised, c.factorised_load, 1.0);
+      if (!c.removed) scatter(c.now, c.stiffness, c.load, -1.0);
     }
     for (const Pin& pin : pins_) load(pin.node, Vector3(-pin.stiffness * (u(pin.node) - pin.rest)));
   }
@@ -140,13 +153,13 @@ class ElementChanges {
 
  private:
   template <class Place>
-  static void add_product(const Changed& c, const Connectivity& nodes, double sign, const MatrixX& x, MatrixX& y,
-                          Place&& place) {
+  static void add_product(const ElementStiffness<E>& stiffness, const Connectivity& nodes, double sign,
+                          const MatrixX& x, MatrixX& y, Place&& place) {
     const Places at = indices_of(nodes, place);
     for (Index k = 0; k < x.cols(); ++k) {
       Values v;
       for (std::size_t i = 0; i < at.size(); ++i) v[static_cast<Index>(i)] = at[i] < 0 ? 0.0 : x(at[i], k);
-      const Values f = sign * (c.stiffness * v);
+      const Values f = sign * (stiffness * v);
       for (std::size_t i = 0; i < at.size(); ++i)
         if (at[i] >= 0) y(at[i], k) += f[static_cast<Index>(i)];
     }

@@ -6,13 +6,13 @@
 #include <palpate/core/config.hpp>
 #include <palpate/core/rigid_motion.hpp>
 #include <palpate/core/types.hpp>
-#include <palpate/cut/detail/cut_orders.hpp>
 #include <palpate/cut/cut_topology.hpp>
 #include <palpate/cut/detail/topology_change.hpp>
 #include <palpate/mesh/mesh.hpp>
 
 #include <cmath>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -52,69 +52,111 @@ inline bool RestingEdge::is_crossed(const Vector3& p0, const Vector3& q0, const 
   return (square != 0.0 && is_between(half / square)) || (half != 0.0 && is_between(constant / half));
 }
 
-/// The last edges of recent sweeps, with the positions of the nodes that those swept.
+/// The last edges of recent sweeps, with what a sweep that continues there needs. In the world's frame.
 class RestingEdges {
  public:
   static constexpr std::size_t most = 8;
-  using Positions = std::vector<Vector3>;
+  struct Edge {
+    Vector3 a, b;
+    std::shared_ptr<const std::vector<Vector3>> positions;  ///< of the nodes that it swept, in the mesh's frame [m]
+    std::set<NodeId> on_sheet;                              ///< nodes on its sheet
+  };
 
-  /// The positions at the end of the sweep that this one continues, null if there is none. Both in the world's frame.
-  const Positions* find(const BladeSweep& next) const noexcept {
+  /// The edge at which a sweep continues, null if there is none.
+  const Edge* find(const BladeSweep& next) const noexcept {
     for (auto edge = edges_.rbegin(); edge != edges_.rend(); ++edge)
-      if (edge->a == next.a0 && edge->b == next.b0) return edge->positions.get();
+      if (edge->a == next.a0 && edge->b == next.b0) return &*edge;
     return nullptr;
   }
-  /// Takes in sweeps, in the world's frame, through nodes at these positions.
-  void rest(const std::vector<BladeSweep>& sweeps, Positions positions);
+  /// Takes in sweeps through nodes at these positions, of which those of a set are on the sheet of each sweep.
+  void rest(const std::vector<BladeSweep>& sweeps, std::vector<Vector3> positions,
+            std::vector<std::set<NodeId>> on_sheet);
   void clear() noexcept { edges_.clear(); }
 
  private:
-  struct Edge {
-    Vector3 a, b;
-    std::shared_ptr<const Positions> positions;
-  };
   std::vector<Edge> edges_;
 };
 
-inline void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, Positions positions) {
-  const auto shared = std::make_shared<const Positions>(std::move(positions));
-  for (const BladeSweep& s : sweeps) {
+inline void RestingEdges::rest(const std::vector<BladeSweep>& sweeps, std::vector<Vector3> positions,
+                               std::vector<std::set<NodeId>> on_sheet) {
+  const auto shared = std::make_shared<const std::vector<Vector3>>(std::move(positions));
+  for (std::size_t k = 0; k < sweeps.size(); ++k) {
+    const BladeSweep& s = sweeps[k];
     std::erase_if(edges_, [&](const Edge& edge) { return edge.a == s.a0 && edge.b == s.b0; });
-    edges_.push_back({s.a1, s.b1, shared});
+    edges_.push_back({s.a1, s.b1, shared, std::move(on_sheet[k])});
   }
   if (edges_.size() > most) edges_.erase(edges_.begin(), edges_.end() - most);
 }
 
-/// The faces between elements whose centres are on opposite sides of the sheet, if the line between the centres crosses
-/// it: the element faces nearest to the cut. The mesh keeps its elements and their quality, and the slit follows the
-/// sheet within half an element. `position(node)` is the current position of a node. The same sweep gives the same
-/// faces; a sweep without area, or one outside the body, gives none. O(elements).
+/// The centre of an element.
 template <Element E, class Position>
-std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
-  std::vector<ElementFace> open;
+Vector3 centre_of(const CutTopology<E>& topology, Index e, Position&& position) {
+  Vector3 sum = Vector3::Zero();
+  for (const NodeId node : topology.mesh().elements[static_cast<std::size_t>(e)]) sum += position(node);
+  return Vector3(sum / E::nodes);
+}
+
+/// The elements that are not removed and not farther from a sheet than twice their size. None for a sweep without
+/// area. O(elements).
+template <Element E, class Position>
+std::vector<Index> elements_near(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
+  std::vector<Index> found;
   const Box near_box = sweep.box();
   constexpr double rounding = 1e-10;  // of an edge that moves along itself: the plane of such a sweep is arbitrary
-  if (!(sweep.area() > rounding * near_box.size().squaredNorm())) return open;
+  if (!(sweep.area() > rounding * near_box.size().squaredNorm())) return found;
   const Mesh<E>& mesh = topology.mesh();
-  const auto centre = [&](Index e) {
-    Vector3 sum = Vector3::Zero();
-    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
-    return Vector3(sum / E::nodes);
-  };
   for (Index e = 0; e < mesh.element_count(); ++e) {
     if (topology.is_removed(e)) continue;
     Box own;
     for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) own.include(position(node));
     const double reach = (own.high - own.low).norm();
-    const Vector3 x = centre(e);
-    if (!(near_box.squared_distance(x) <= 4.0 * reach * reach)) continue;
+    if (near_box.squared_distance(centre_of(topology, e, position)) <= 4.0 * reach * reach) found.push_back(e);
+  }
+  return found;
+}
+
+/// The faces between elements whose centres are on opposite sides of the sheet, if the line between the centres crosses
+/// it: the element faces nearest to the cut. `position(node)` is the current position of a node. The same sweep gives
+/// the same faces; a sweep without area, or one outside the body, gives none. O(elements near the sheet).
+template <Element E, class Position>
+std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position,
+                                     const std::vector<Index>& near_sheet) {
+  std::vector<ElementFace> open;
+  for (const Index e : near_sheet) {
+    if (topology.is_removed(e)) continue;
+    const Vector3 x = centre_of(topology, e, position);
     for (std::size_t f = 0; f < E::faces.size(); ++f) {
       const Index other = topology.neighbour(e, f);
-      if (other > e && sweep.crosses(x, centre(other))) open.push_back({e, static_cast<int>(f)});
+      if (other > e && sweep.crosses(x, centre_of(topology, other, position))) open.push_back({e, static_cast<int>(f)});
     }
   }
   return open;
 }
+/// The same, of all elements. O(elements).
+template <Element E, class Position>
+std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const BladeSweep& sweep, Position&& position) {
+  return swept_faces(topology, sweep, position, elements_near(topology, sweep, position));
+}
+
+/// Whether a point is beside a sweep: between the ends of its last edge, and not ahead of that. Where the sweep begins
+/// a cut, not behind its first edge either.
+class SweptArea {
+ public:
+  SweptArea(const BladeSweep& sweep, bool continues) noexcept : a0_(sweep.a0), a1_(sweep.a1), continues_(continues) {
+    edge_ = sweep.b1 - sweep.a1;
+    const Vector3 motion = (sweep.a1 - sweep.a0) + (sweep.b1 - sweep.b0);
+    forward_ = motion - motion.dot(edge_) / edge_.squaredNorm() * edge_;
+  }
+  bool contains(const Vector3& x) const noexcept {
+    const double place = (x - a1_).dot(edge_) / edge_.squaredNorm();
+    return place >= 0.0 && place <= 1.0 && (x - a1_).dot(forward_) <= 0.0 &&
+           (continues_ || (x - a0_).dot(forward_) >= 0.0);
+  }
+
+ private:
+  Vector3 a0_, a1_, edge_, forward_;
+  bool continues_;
+};
 
 /// The faces between elements that a body moved over an edge that stayed in place: the line between their centres
 /// crosses the edge while the nodes move from `before(node)` to `after(node)`. O(elements).
@@ -122,11 +164,6 @@ template <Element E, class Before, class After>
 void add_faces_moved_over(const CutTopology<E>& topology, const RestingEdge& edge, Before&& before, After&& after,
                           std::vector<ElementFace>& open) {
   const Mesh<E>& mesh = topology.mesh();
-  const auto centre = [&](Index e, auto&& position) {
-    Vector3 sum = Vector3::Zero();
-    for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)]) sum += position(node);
-    return Vector3(sum / E::nodes);
-  };
   Box near_box;
   near_box.include(edge.a);
   near_box.include(edge.b);
@@ -135,41 +172,14 @@ void add_faces_moved_over(const CutTopology<E>& topology, const RestingEdge& edg
     Box own;
     for (const NodeId node : mesh.elements[static_cast<std::size_t>(e)])
       for (const Vector3& x : {before(node), after(node)}) own.include(x);
-    const Vector3 from = centre(e, before), to = centre(e, after);
+    const Vector3 from = centre_of(topology, e, before), to = centre_of(topology, e, after);
     const double reach = 2.0 * (own.high - own.low).norm();
     if (from == to || !(near_box.squared_distance(to) <= reach * reach)) continue;
     for (std::size_t f = 0; f < E::faces.size(); ++f)
       if (const Index other = topology.neighbour(e, f); other >= 0)
-        if (edge.is_crossed(from, centre(other, before), to, centre(other, after)))
+        if (edge.is_crossed(from, centre_of(topology, other, before), to, centre_of(topology, other, after)))
           open.push_back({e, static_cast<int>(f)});
   }
-}
-
-/// Waiting orders as one, with the faces that their sweeps open, and those that have moved over the edge of a blade
-/// between two sweeps. `local` maps the world to the frame of the mesh; `position` as above.
-template <Element E, class Position>
-CutOrder combined(const CutOrders::Taken& taken, const CutTopology<E>& topology, const Eigen::Isometry3d& local,
-                  Position&& position, RestingEdges& edges) {
-  CutOrder all = taken.order;
-  for (const BladeSweep& s : taken.sweeps) {
-    const BladeSweep own{local * s.a0, local * s.b0, local * s.a1, local * s.b1};
-    if (const auto* positions = edges.find(s)) {
-      const auto before = [&](NodeId node) {
-        NodeId known = node;
-        while (static_cast<std::size_t>(known) >= positions->size()) known = topology.copied_from(known);
-        return (*positions)[static_cast<std::size_t>(known)];
-      };
-      add_faces_moved_over(topology, {own.a0, own.b0}, before, position, all.open);
-    }
-    const auto faces = swept_faces(topology, own, position);
-    all.open.insert(all.open.end(), faces.begin(), faces.end());
-  }
-  if (!taken.sweeps.empty()) {
-    std::vector<Vector3> positions;
-    for (NodeId node = 0; node < topology.mesh().node_count(); ++node) positions.push_back(position(node));
-    edges.rest(taken.sweeps, std::move(positions));
-  }
-  return all;
 }
 
 }}}  // namespace palpate::detail

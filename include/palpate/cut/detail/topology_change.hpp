@@ -7,6 +7,7 @@
 #include <palpate/core/types.hpp>
 #include <palpate/mesh/mesh.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace detail {
 struct ElementFace {
   Index element = 0;
   int face = 0;
+
+  friend bool operator==(const ElementFace&, const ElementFace&) = default;
 };
 
 }  // namespace detail
@@ -47,18 +50,67 @@ void require_ids(const CutOrder& order, Index elements) {
     require(exists(f.element) && f.face >= 0 && f.face < static_cast<int>(E::faces.size()), f.element);
 }
 
-/// An element that a cut removed, or moved to copies of its nodes.
+/// A node that a cut moves, with its new position in the body at rest [m].
+struct MovedNode {
+  NodeId node = 0;
+  Vector3 position = Vector3::Zero();
+};
+
+/// An edge between two nodes that a cut divides, with the position of the new node in the body at rest [m].
+struct DividedEdge {
+  NodeId from = 0, to = 0;
+  Vector3 position = Vector3::Zero();
+};
+
+/// First nodes to move, then edges to divide with all elements around them, then what an order does. The elements must
+/// keep a positive volume, except those that it removes.
+struct ReshapingOrder : CutOrder {
+  std::vector<MovedNode> move;
+  std::vector<DividedEdge> divide;
+
+  bool empty() const noexcept { return CutOrder::empty() && move.empty() && divide.empty(); }
+};
+
+/// An element of the given mesh, or a part of one that was divided, with its present shape: material and loads are
+/// those of `whole`.
+template <Element E>
+struct ElementPart {
+  Index whole = 0;
+  ElementNodes<E> shape{};        ///< [m]
+  std::uint8_t faces = 0b111111;  ///< bit f is set unless face f was made by a division
+};
+
+/// An element that a cut removed, moved to other nodes, gave another shape, or added.
 template <Element E>
 struct ChangedElement {
   Index element = 0;
   typename Mesh<E>::Connectivity before{}, after{};
+  ElementPart<E> was{};  ///< before the cut
   bool removed = false;
+  bool added = false;  ///< a part of a divided element; `before` and `was` have no meaning
 };
 
-/// A node created by a cut, at the position of its parent.
+/// A node created by a cut, at the position of its parent, or on an edge from it.
 struct NodeCopy {
   NodeId node = 0, parent = 0;
 };
+
+/// What became of a face of a divided element: another element has it now, or a half of it.
+struct FollowedFace {
+  ElementFace from, to;
+  bool is_half = false;
+};
+
+/// Adds the new halves to a list of faces, and renames those that other elements have now.
+inline void follow(const FollowedFace& followed, std::vector<ElementFace>& faces) {
+  for (std::size_t k = 0, count = faces.size(); k < count; ++k) {
+    if (faces[k] != followed.from) continue;
+    if (followed.is_half)
+      faces.push_back(followed.to);
+    else
+      faces[k] = followed.to;
+  }
+}
 
 /// A part of the body without support: a separate body, for the caller to move or to draw.
 struct Fragment {
@@ -76,7 +128,8 @@ struct TopologyChange {
   std::vector<ChangedElement<E>> detached_elements;  ///< of fragments detached before
   std::vector<NodeCopy> copies;                      ///< with ascending ids
   std::vector<NodeId> bare_nodes;                    ///< of the supported body, used by no element any more
-  std::vector<ElementFace> exposed;                  ///< faces that are now on the surface
+  std::vector<FollowedFace> followed;                ///< faces of divided elements, in the order of the divisions
+  std::vector<ElementFace> exposed;                  ///< faces that are now on the surface, after that
   std::vector<Fragment> fragments;                   ///< detached by this cut
 
   bool empty() const noexcept { return elements.empty() && detached_elements.empty(); }
