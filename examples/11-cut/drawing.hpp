@@ -37,7 +37,7 @@ inline Rest rest_of(Organ& tissue) {
       const auto node = static_cast<NodeId>(i);
       const NodeId parent = origin[static_cast<std::size_t>(node_map[i])] = topology.origin_of(node);
       rest.displacement.segment<3>(3 * Index{node_map[i]}) = u.segment<3>(3 * Index{node});
-      if (node_map[static_cast<std::size_t>(parent)] >= 0)
+      if (!topology.is_made(node) && node_map[static_cast<std::size_t>(parent)] >= 0)
         rest.gape = std::max(rest.gape, (u.segment<3>(3 * Index{node}) - u.segment<3>(3 * Index{parent})).norm());
     }
     for (Vector3& x : rest.mesh.positions) x += tissue.origin();

@@ -228,6 +228,41 @@ TEST_CASE("tractions and pressure act on the moved and divided elements as on th
   CHECK((total() - whole).norm() < 1e-4 * whole.norm());  // flat elements have nearly no volume left
 }
 
+TEST_CASE("the drawn surface of a body with divided elements is closed", "[cut]") {
+  testing::Random random(2);
+  Straight tissue(uneven_block(BoxSplit::six, 0.2, random), Scene().fix("z0").touch("z1"), soft);
+  VisualSurface before(tissue);
+  std::size_t divided = 0;
+  for (int k = 0; k < 6; ++k) {
+    tissue.cut(random_sheet(random, 0.03).sweep);
+    while (tissue.process_cuts()) {}
+    tissue.read([&](const auto& topology, const auto&) {
+      divided = topology.mesh().elements.size() - tissue.body().mesh.elements.size();
+    });
+    before.update();
+    VisualSurface after(tissue);
+    CHECK(before.triangles() == after.triangles());
+    CHECK(before.exposed() == after.exposed());
+    const auto size = static_cast<std::size_t>(3 * after.point_count());
+    std::vector<float> positions(size), normals(size);
+    REQUIRE(after.read_surface({}, positions, normals));
+    Vector3 sum = Vector3::Zero();
+    double skin = 0.0;
+    for (const auto& t : after.triangles()) {
+      const auto at = [&](int p) {
+        const auto i = 3 * static_cast<std::size_t>(p);
+        return Vector3(positions[i], positions[i + 1], positions[i + 2]);
+      };
+      const Vector3 area = 0.5 * (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
+      sum += area;
+      if (after.exposed()[static_cast<std::size_t>(t[0])] == 0) skin += area.norm();
+    }
+    CHECK(sum.norm() < 1e-8);
+    CHECK(skin == Catch::Approx(6.0 * side * side).epsilon(1e-5));
+  }
+  CHECK(divided > 0);
+}
+
 TEST_CASE("short strokes cut as straight as one sweep, through a body that sags", "[cut][strokes]") {
   double mass = 0.0;  // of the piece that one sweep cuts off
   for (const double length : {0.06, 0.005, 0.001}) {
@@ -254,6 +289,31 @@ TEST_CASE("short strokes cut as straight as one sweep, through a body that sags"
     if (mass == 0.0) mass = pieces[0].mass;
     CHECK(pieces[0].mass == Catch::Approx(mass).epsilon(0.02));
   }
+}
+
+TEST_CASE("a blade that turns about its tip, and one whose edge shrinks to a point, cut straight", "[cut]") {
+  testing::Random random(9);
+  const auto mesh = uneven_block(BoxSplit::six, 0.2, random);
+  const Vector3 tip(0.02, -0.005, 0.02), first(0.02, 0.045, 0.02), last(0.05, 0.04, 0.02), high(0.0, 0.0, 0.011);
+  for (const BladeSweep& fan : {BladeSweep{tip, first, tip, last}, BladeSweep{first, last, tip, tip},
+                                BladeSweep{tip, tip, first, last}, BladeSweep{tip + high, first + high, tip, last}}) {
+    CutTopology<Tet4> t(mesh, fixed_at(mesh, "z0"));
+    const double least = 0.5 * worst_quality(t);
+    const auto applied = cut(t, fan, least);
+    CHECK(applied.off_sheet < 1e-3);
+    CHECK(worst_quality(t) >= least);
+    double area = 0.0;  // of both walls
+    for (const auto& f : applied.change.exposed) {
+      const auto nodes = t.face_nodes(f);
+      const Vector3 a = t.mesh().position(nodes[0]);
+      area += 0.5 * (t.mesh().position(nodes[1]) - a).cross(t.mesh().position(nodes[2]) - a).norm();
+    }
+    CHECK(area > 0.6 * 2.0 * fan.area() * 0.7);  // a part of the fan is outside of the block, its border stays closed
+    CHECK(area < 1.5 * 2.0 * fan.area());
+    check_graph(t);
+  }
+  CutTopology<Tet4> t(mesh, fixed_at(mesh, "z0"));
+  CHECK(cut(t, BladeSweep{tip, first, tip, first}, 0.1).change.empty());  // no area
 }
 
 TEST_CASE("cuts that follow faces are chosen by a parameter", "[cut]") {

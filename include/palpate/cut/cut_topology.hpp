@@ -257,7 +257,8 @@ class CutTopology : public detail::ElementGraph<E> {
       const Group& from = mesh_.groups.all()[g];
       Group& to = part.groups.get_or_add(from.name, from.dimension);
       for (std::size_t i = 0; i < node_map.size(); ++i)
-        if (node_map[i] >= 0 && std::ranges::binary_search(from.nodes, origin_of(static_cast<NodeId>(i))))
+        if (node_map[i] >= 0 && !this->is_made(static_cast<NodeId>(i)) &&
+            std::ranges::binary_search(from.nodes, origin_of(static_cast<NodeId>(i))))
           to.nodes.push_back(node_map[i]);
       for (const detail::ElementFace& f : group_faces_[g]) {
         if (place[at(f.element)] < 0) continue;

@@ -30,10 +30,8 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   explicit VisualSurface(Model& model) : model_(&model) {
     const auto& boundary = model.boundary();
     rendered_ = model.rendered_nodes();
-    model.read([&](const CutTopology<E>& topology, const auto&...) {
-      kinds_.assign(static_cast<std::size_t>(topology.mesh().element_count()), {});
-      for (const BoundaryFace& face : boundary) note_kind(topology, face);
-    });
+    kinds_.assign(static_cast<std::size_t>(model.body().mesh.element_count()), {});
+    for (const BoundaryFace& face : boundary) note_kind(model.body().mesh, face);
     update();
   }
 
@@ -83,12 +81,11 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
   using Kinds = std::array<FaceKind, E::faces.size()>;
 
   /// Of a face of the uncut body: whether the scene renders it.
-  void note_kind(const CutTopology<E>& topology, const BoundaryFace& face) {
+  void note_kind(const Mesh<E>& mesh, const BoundaryFace& face) {
     const auto seen = [&](NodeId i) { return std::ranges::binary_search(rendered_, i); };
     const bool hidden = !rendered_.empty() && !std::ranges::all_of(face.nodes, seen);
     for (std::size_t local = 0; local < E::faces.size(); ++local) {
-      const auto nodes = topology.face_nodes({face.element, static_cast<int>(local)});
-      if (std::ranges::equal(nodes, face.nodes, {}, [&](NodeId i) { return topology.origin_of(i); }))
+      if (std::ranges::equal(detail::face_ids<E>(mesh, face.element, local), face.nodes))
         kinds_[static_cast<std::size_t>(face.element)][local] = hidden ? FaceKind::hidden : FaceKind::rendered;
     }
   }
@@ -109,8 +106,10 @@ class VisualSurface<HapticFEModel<E, M, Cuttable<Inner>>> {
     };
     for (Index e = 0; e < topology.mesh().element_count(); ++e) {
       if (topology.is_removed(e)) continue;
+      const detail::ElementPart<E> part = topology.part(e);
       for (std::size_t local = 0; local < E::faces.size(); ++local) {
-        const FaceKind kind = kinds_[static_cast<std::size_t>(e)][local];
+        const bool is_given = (part.faces >> local & 1u) != 0;
+        const FaceKind kind = is_given ? kinds_[static_cast<std::size_t>(part.whole)][local] : FaceKind::exposed;
         if (topology.neighbour(e, local) >= 0 || kind == FaceKind::hidden) continue;
         const auto face = topology.face_nodes({e, static_cast<int>(local)});
         detail::with_face_element<E>(face.size(), [&]<TriangulatedFace F>() {

@@ -63,7 +63,10 @@ class CuttableTissue : public ModelBase {
     const detail::CutServed::Call call(served_);  // also while it waits for a change of the loads
     const std::scoped_lock lock(changes_);
     const ScopedIdTranslation translation(original_ids());
-    const detail::CutOrders::Taken taken = orders_.take();
+    detail::CutOrders::Taken taken = orders_.take();
+    const auto is_gone = [count = elements_.load(std::memory_order_acquire)](Index e) { return e >= count; };
+    std::erase_if(taken.order.remove, is_gone);  // given before a reset
+    std::erase_if(taken.order.open, [&](const detail::ElementFace& f) { return is_gone(f.element); });
     struct Done {
       CuttableTissue& tissue;
       const detail::CutOrders::Taken& taken;

@@ -34,6 +34,8 @@ class AllowedMotion {
   }
   /// A plane in which it has to stay besides.
   void add_plane(const Vector3& normal) { surfaces_.push_back({normal, false}); }
+  /// It must not move.
+  void fix() noexcept { has_rim_ = true; }
   bool is_corner() const noexcept { return has_rim_ || surfaces_.size() > 2; }
   /// The nearest allowed direction to one of length 1; zero where there is none.
   Vector3 project(const Vector3& direction) const noexcept {
@@ -60,6 +62,7 @@ AllowedMotion allowed_motion(const CutTopology<E>& topology, NodeId node, Positi
   constexpr double thin = 1e-3;  // a face that has nearly become a line has no direction
   const Mesh<E>& mesh = topology.mesh();
   AllowedMotion boundary, all;
+  bool is_on_support = false;
   for (const Index e : topology.elements_at(node))
     for (std::size_t f = 0; f < E::faces.size(); ++f) {
       const Index other = topology.neighbour(e, f);
@@ -72,8 +75,10 @@ AllowedMotion allowed_motion(const CutTopology<E>& topology, NodeId node, Positi
       const bool is_support =
           std::ranges::all_of(face, [&](NodeId i) { return topology.constrained()[static_cast<std::size_t>(i)] != 0; });
       all.add_face(normal, is_support);
+      is_on_support = is_on_support || is_support;
       if (other < 0) boundary.add_face(normal, is_support);
     }
+  if (topology.constrained()[static_cast<std::size_t>(node)] != 0 && !is_on_support) boundary.fix(), all.fix();
   return all.is_corner() ? boundary : all;  // between regions as rough as elements are, it is not followed
 }
 

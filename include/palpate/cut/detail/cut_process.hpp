@@ -41,9 +41,10 @@ class CutProcess : public CutState<E> {
         whole_topology_(topology_),
         whole_surface_(touchable_),
         parameters_(parameters) {
-    constexpr double share = 0.5;  // of the quality of the worst element, which those of a cut may have
+    constexpr double share = 0.5, floor = 0.02;  // of the quality of the worst element; slivers make no others
     for (Index e = 0; e < topology_.mesh().element_count(); ++e)
       least_quality_ = std::min(least_quality_, share * topology_.quality(e));
+    least_quality_ = std::max(least_quality_, floor);
     remember();
   }
 
@@ -55,7 +56,7 @@ class CutProcess : public CutState<E> {
     const bool renewed = take_renewal(), caught_up = catch_up();
     if (taken.count == 0) return caught_up || check_next() || renewed;
     if (!before_) remember();
-    const std::uint64_t cuts = report_.cuts, changes = report_.changes;
+    const CutReport before = report_;
     has_new_compliance_ = false;
     run_or_undo([&] { cut(taken, local); },
                 [&] {
@@ -63,8 +64,10 @@ class CutProcess : public CutState<E> {
                   is_behind_ = has_new_compliance_;
                   if (has_new_compliance_) return;
                   go_back();
-                  report_.cuts = cuts;
-                  report_.changes = changes;
+                  report_.cuts = before.cuts;
+                  report_.changes = before.changes;
+                  report_.quality = before.quality;
+                  report_.off_sheet = before.off_sheet;
                 });
     return true;
   }

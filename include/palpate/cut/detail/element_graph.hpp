@@ -80,6 +80,8 @@ class ElementGraph {
       return state(e) == ElementState::supported;
     });
   }
+  /// Whether a node was made on an edge, or is a copy of one that was.
+  bool is_made(NodeId node) const noexcept { return at(node) < made_.size() && made_[at(node)] != 0; }
   /// Whether a cut has moved a node.
   bool is_moved(NodeId node) const noexcept { return at(node) < moved_.size() && moved_[at(node)] != 0; }
   /// Whether a cut has opened a face at a node.
@@ -163,6 +165,8 @@ class ElementGraph {
     origin_.push_back(origin_[at(from)]);
     copied_from_.push_back(from);
     star_.emplace_back();
+    made_.resize(star_.size(), 0);
+    made_.back() = made_[at(from)];
     change.copies.push_back({node, from});
     return node;
   }
@@ -172,6 +176,7 @@ class ElementGraph {
     if (!is_divisible(edge.from, edge.to)) return;
     const std::vector<Index> ring = elements_around(edge.from, edge.to);
     const NodeId middle = add_node(edge.position, edge.from, 0, change);
+    made_[at(middle)] = 1;
     std::vector<Index> second;  // the other halves
     for (const Index e : ring) second.push_back(halve(e, edge, middle, change));
     for (std::size_t k = 0; k < ring.size(); ++k)
@@ -251,7 +256,7 @@ class ElementGraph {
     return second;
   }
 
-  std::vector<char> moved_;  // empty before the first move
+  std::vector<char> moved_, made_;  // per node, those before the first such change may be missing
   std::vector<NodeId> origin_, copied_from_;
   std::vector<Index> divided_from_;
   std::vector<std::uint8_t> given_faces_;

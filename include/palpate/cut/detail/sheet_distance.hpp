@@ -14,7 +14,9 @@ class SheetDistance {
  public:
   explicit SheetDistance(const BladeSweep& sweep) noexcept : origin_(sweep.a0) {
     const Vector3 diagonal = sweep.b1 - sweep.a0;
-    const Vector3 first = cross(sweep.b0 - sweep.a0, diagonal), second = cross(diagonal, sweep.a1 - sweep.a0);
+    const Vector3 first = cross(sweep.b0 - sweep.a0, diagonal);
+    Vector3 second = cross(diagonal, sweep.a1 - sweep.a0);
+    if (first.dot(second) < 0.0) second = -second;  // a blade that turns about its middle
     const Vector3 both = first + second;
     beside_ = cross(both, diagonal);
     normal_ = {unit(first, both), unit(second, both)};

@@ -27,8 +27,7 @@ namespace palpate { inline namespace PALPATE_ABI { namespace detail {
 /// blade has passed. Every edge beside the sheet that crosses it gets an end there, the nearer one where it can; nodes
 /// on the sheet and beside poor elements are moved, those along it, until the elements are good enough. An element
 /// with all nodes on the sheet has no volume left and is removed. An edge whose ends cannot be moved is divided. Where
-/// that would leave an element worse than allowed, or the edge is on a surface, a cut follows the faces nearest to the
-/// sheet.
+/// that would leave an element worse than allowed, a cut follows the faces nearest to the sheet.
 ///
 /// Nodes as in the snapping of Molino, Bao and Fedkiw (2004) and Labelle and Shewchuk (2007).
 template <Element E, class Position, class Fixed>
@@ -128,13 +127,18 @@ class StraightCut {
     NodeId nearer, farther;
   };
   static constexpr double on_sheet = 0.005;  // distance of a node that counts as on the sheet, in sizes of its element
+  static constexpr double at_rest = 0.8;     // share of the quality in the displaced body that an element has at rest
   static constexpr double poor = 0.05;       // quality accepted before elements are improved
 
   const auto& nodes_of(Index e) const { return topology_.mesh().elements[static_cast<std::size_t>(e)]; }
-  double quality(Index e) const {
+  template <class Place>
+  double quality_of(Index e, Place&& place) const {
     ElementNodes<E> x;
-    for (int a = 0; a < E::nodes; ++a) x.row(a) = at(nodes_of(e)[static_cast<std::size_t>(a)]).transpose();
+    for (int a = 0; a < E::nodes; ++a) x.row(a) = place(nodes_of(e)[static_cast<std::size_t>(a)]).transpose();
     return element_shape<E>(x).quality;
+  }
+  double quality(Index e) const {
+    return quality_of(e, [&](NodeId node) { return at(node); });
   }
   double size(Index e) const {
     double longest = 0.0;
@@ -323,6 +327,7 @@ class StraightCut {
         if (quality(e) >= wanted_) continue;
         for (const NodeId node : nodes_of(e)) any = placed_.erase(node) > 0 || any;
       }
+    std::erase_if(flat_, [&](Index e) { return !is_flat(e); });
   }
 
   /// Divides an edge unless an element around it would become too bad, or is divided already.
@@ -333,45 +338,36 @@ class StraightCut {
     if (std::ranges::any_of(around, [&](Index e) { return taken.contains(e); })) return;
     const double part = distance(from) / (distance(from) - distance(to));
     const Vector3 x = at(from) + part * (at(to) - at(from));
-    for (const Index e : around)
-      for (const NodeId end : {from, to})
-        if (!(quality_with(e, end, x) >= wanted_)) return;
-    taken.insert(around.begin(), around.end());
     const Mesh<E>& mesh = topology_.mesh();
+    const Vector3 rest = mesh.position(from) + part * (mesh.position(to) - mesh.position(from));
+    const auto is_good = [&](Index e, NodeId end) {
+      return quality_of(e, [&](NodeId node) { return node == end ? x : at(node); }) >= wanted_ &&
+             quality_of(e, [&](NodeId node) { return node == end ? rest : mesh.position(node); }) >= at_rest * wanted_;
+    };
+    if (!std::ranges::all_of(around, [&](Index e) { return is_good(e, from) && is_good(e, to); })) return;
+    taken.insert(around.begin(), around.end());
     if (topology_.constrained()[static_cast<std::size_t>(from)] != 0) std::swap(from, to);  // nodes inherit from `from`
     placed_[static_cast<NodeId>(mesh.node_count() + static_cast<Index>(order.divide.size()))] = x;
-    const Vector3 rest = mesh.position(edge.nearer) + part * (mesh.position(edge.farther) - mesh.position(edge.nearer));
     order.divide.push_back({from, to, rest});
   }
-  double quality_with(Index e, NodeId node, const Vector3& at_node) const {
-    ElementNodes<E> x;
-    for (int a = 0; a < E::nodes; ++a) {
-      const NodeId own = nodes_of(e)[static_cast<std::size_t>(a)];
-      x.row(a) = (own == node ? at_node : at(own)).transpose();
-    }
-    return element_shape<E>(x).quality;
-  }
 
-  /// In the body at rest. Empty where its elements would become too bad although those of the displaced one do not.
+  /// In the body at rest, where elements that would become too bad take back moves, too.
   ReshapingOrder order() {
-    constexpr double share = 0.8;  // of the quality in the displaced body
-    ReshapingOrder made;
     std::map<NodeId, Vector3> rest;
-    for (const auto& [node, x] : placed_) rest[node] = rest_position(node, x);
-    for (const Index e : changed_elements()) {
-      if (flat_.contains(e)) continue;
-      ElementNodes<E> x;
-      for (int a = 0; a < E::nodes; ++a) {
-        const auto found = rest.find(nodes_of(e)[static_cast<std::size_t>(a)]);
-        x.row(a) =
-            (found != rest.end() ? found->second : topology_.mesh().position(nodes_of(e)[static_cast<std::size_t>(a)]))
-                .transpose();
+    const auto place = [&](NodeId node) -> Vector3 {
+      const auto found = rest.find(node);
+      return found != rest.end() ? found->second : topology_.mesh().position(node);
+    };
+    for (bool any = true; std::exchange(any, false);) {
+      rest.clear();
+      for (const auto& [node, x] : placed_) rest[node] = rest_position(node, x);
+      for (const Index e : changed_elements()) {
+        if (flat_.contains(e) || quality_of(e, place) >= at_rest * wanted_) continue;
+        for (const NodeId node : nodes_of(e)) any = placed_.erase(node) > 0 || any;
       }
-      if (element_shape<E>(x).quality >= share * wanted_) continue;
-      placed_.clear();
-      flat_.clear();
-      return made;
+      if (any) take_back();
     }
+    ReshapingOrder made;
     for (const auto& [node, x] : rest) made.move.push_back({node, x});
     made.remove.assign(flat_.begin(), flat_.end());
     return made;

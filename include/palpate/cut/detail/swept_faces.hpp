@@ -138,23 +138,39 @@ std::vector<ElementFace> swept_faces(const CutTopology<E>& topology, const Blade
   return swept_faces(topology, sweep, position, elements_near(topology, sweep, position));
 }
 
-/// Whether a point is beside a sweep: between the ends of its last edge, and not ahead of that. Where the sweep begins
-/// a cut, not behind its first edge either.
+/// Whether a point is beside a sweep, seen along its normal. Where the sweep continues another one, also behind its
+/// first edge: faces that have moved there are still to open.
 class SweptArea {
  public:
-  SweptArea(const BladeSweep& sweep, bool continues) noexcept : a0_(sweep.a0), a1_(sweep.a1), continues_(continues) {
-    edge_ = sweep.b1 - sweep.a1;
-    const Vector3 motion = (sweep.a1 - sweep.a0) + (sweep.b1 - sweep.b0);
-    forward_ = motion - motion.dot(edge_) / edge_.squaredNorm() * edge_;
-  }
+  SweptArea(const BladeSweep& sweep, bool continues) noexcept
+      : sweep_(sweep),
+        edge_(sweep.b0 - sweep.a0),
+        forward_((sweep.a1 - sweep.a0) + (sweep.b1 - sweep.b0)),
+        continues_(continues) {}
+
   bool contains(const Vector3& x) const noexcept {
-    const double place = (x - a1_).dot(edge_) / edge_.squaredNorm();
-    return place >= 0.0 && place <= 1.0 && (x - a1_).dot(forward_) <= 0.0 &&
-           (continues_ || (x - a0_).dot(forward_) >= 0.0);
+    return is_over(x, sweep_.a0, sweep_.b0, sweep_.b1) || is_over(x, sweep_.a0, sweep_.b1, sweep_.a1) ||
+           (continues_ && is_behind(x));
   }
 
  private:
-  Vector3 a0_, a1_, edge_, forward_;
+  static bool is_over(const Vector3& x, const Vector3& p, const Vector3& q, const Vector3& r) noexcept {
+    constexpr double rounding = 1e-9;  // of the area
+    const Vector3 normal = cross(q - p, r - p);
+    const double margin = -rounding * normal.squaredNorm();
+    const auto is_inside = [&](const Vector3& from, const Vector3& to) {
+      return cross(to - from, x - from).dot(normal) >= margin;
+    };
+    return normal.squaredNorm() > 0.0 && is_inside(p, q) && is_inside(q, r) && is_inside(r, p);
+  }
+  bool is_behind(const Vector3& x) const noexcept {
+    const double square = edge_.squaredNorm(), along = (x - sweep_.a0).dot(edge_);
+    const Vector3 ahead = square * forward_ - forward_.dot(edge_) * edge_;
+    return square > 0.0 && along >= 0.0 && along <= square && (x - sweep_.a0).dot(ahead) <= 0.0;
+  }
+
+  BladeSweep sweep_;
+  Vector3 edge_, forward_;
   bool continues_;
 };
 
