@@ -15,10 +15,13 @@
 
 using namespace palpate;
 
+namespace straight_cuts {
+
 namespace {
 
 constexpr double side = 0.04;  // of the block, with facets of 4 mm
 using Straight = HapticFEModel<Tet4, LinearElastic, Cuttable<Condensed<SelectiveInverse>>>;
+const CutParameters straight{.cuttable = {}, .straight = true};
 const LinearElastic soft{.youngs_modulus = 5e3, .poisson_ratio = 0.4, .density = 1000.0};
 
 /// A block whose nodes are moved by up to a part of a cell: those on its surface along that.
@@ -131,7 +134,7 @@ TEST_CASE("a piece that a blade cuts off has the mass on its side of the sheet",
   testing::Random random(8);
   const auto mesh = uneven_block(BoxSplit::five_mirrored, 0.1, random);
   for (const double at : {0.011, 0.0175, 0.026}) {
-    Straight tissue(mesh, Scene().fix("z0").touch("z1"), soft);
+    Straight tissue(mesh, Scene().fix("z0").touch("z1"), soft, {}, straight);
     // Inclined: its height is `at` in the middle, and changes by 4 mm along x.
     const auto edge = [&](double x, double y) { return Vector3(x, y, at + 0.1 * (x - 0.5 * side)); };
     tissue.cut(BladeSweep{edge(-1.0, -1.0), edge(-1.0, 1.0), edge(1.0, -1.0), edge(1.0, 1.0)});
@@ -230,7 +233,7 @@ TEST_CASE("tractions and pressure act on the moved and divided elements as on th
 
 TEST_CASE("the drawn surface of a body with divided elements is closed", "[cut]") {
   testing::Random random(2);
-  Straight tissue(uneven_block(BoxSplit::six, 0.2, random), Scene().fix("z0").touch("z1"), soft);
+  Straight tissue(uneven_block(BoxSplit::six, 0.2, random), Scene().fix("z0").touch("z1"), soft, {}, straight);
   VisualSurface before(tissue);
   std::size_t divided = 0;
   for (int k = 0; k < 6; ++k) {
@@ -316,9 +319,9 @@ TEST_CASE("a blade that turns about its tip, and one whose edge shrinks to a poi
   CHECK(cut(t, BladeSweep{tip, first, tip, first}, 0.1).change.empty());  // no area
 }
 
-TEST_CASE("cuts that follow faces are chosen by a parameter", "[cut]") {
+TEST_CASE("without the parameter cuts follow faces", "[cut]") {
   const auto mesh = box_tet4({side, side, side}, {5, 5, 5});
-  Straight tissue(mesh, Scene().fix("z0").touch("z1"), soft, {}, {.cuttable = {}, .straight = false});
+  Straight tissue(mesh, Scene().fix("z0").touch("z1"), soft);
   tissue.cut(BladeSweep{{0.021, -1, 0.02}, {0.021, 1, 0.02}, {0.021, -1, 0.1}, {0.021, 1, 0.1}});
   while (tissue.process_cuts()) {}
   CHECK(tissue.cut_report().off_sheet > 1e-3);
@@ -329,3 +332,5 @@ TEST_CASE("cuts that follow faces are chosen by a parameter", "[cut]") {
             topology.mesh().positions[static_cast<std::size_t>(topology.origin_of(static_cast<NodeId>(i)))]);
   });
 }
+
+}  // namespace straight_cuts

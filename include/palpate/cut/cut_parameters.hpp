@@ -14,9 +14,9 @@ struct CutParameters {
   /// Group, region, nodes or set of points whose compliance is stored in addition to that of the touchable ones: cuts
   /// there need no solve.
   std::optional<Selection> cuttable{};
-  /// Blades cut Tet4 where they pass: nodes beside the sheet are moved onto it at rest, and edges divided. Otherwise,
-  /// and for other elements, cuts follow the faces nearest to the sheet, and change fewer rows.
-  bool straight = true;
+  /// Blades cut Tet4 where they pass: nodes beside the sheet are moved onto it at rest, and edges divided; that changes
+  /// more rows. Otherwise, and for other elements, cuts follow the faces nearest to the sheet.
+  bool straight = false;
   Index most_added = 900;          ///< dofs that cuts may add before a new factor is made in a background thread
   double tolerated_error = 1e-10;  ///< relative, as measured; beyond it a new factor is made immediately
 };
