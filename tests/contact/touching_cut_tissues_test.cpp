@@ -215,8 +215,7 @@ std::array<int, 2> faces_of_cut_at(TouchingTissues& tissues, Tissue& sheet, doub
           is_inside = is_inside && std::abs(x[0] - 0.5 * side) < 0.4 * side && std::abs(x[1] - 0.5 * side) < 0.4 * side;
         }
         if (!is_inside || highest < 1e-6 || lowest > 5e-3 - 1e-6) continue;
-        // The sheet of the blade is plane, the layers are bent.
-        ++faces[lowest > 1.5e-3 && highest < 3.5e-3 ? 0 : 1];
+        ++faces[highest - lowest < 1e-9 ? 0 : 1];
       }
   });
   return faces;

@@ -201,8 +201,7 @@ TEST_CASE("overstretched remains of a cut are left out of contact and reported, 
 
 TEST_CASE("a cut under the tool: the force continues, and its rate of change is limited by the gate",
           "[cut][extreme][F3]") {
-  const CutParameters faces{.cuttable = {}, .straight = false};  // vertices under the tool stay where they are
-  Tissue tissue(slab(), constrained_below(), soft, {}, faces);
+  Tissue tissue(slab(), constrained_below(), soft);
   HapticServo servo(tissue, SphereTool{});
   const ForceLimits limits = ForceLimits::from(DeviceLimits{});
   double time = 0.0, before = 0.0, longest_step = 0.0;
@@ -237,7 +236,7 @@ TEST_CASE("a cut under the tool: the force continues, and its rate of change is 
   CHECK(last.norm() < (1.0 + of_points) * before);
   CHECK(longest_step <= limits.slew_rate * 1e-3 * (1.0 + 1e-9));
   // The rendered force equals that of a new session on the cut body.
-  Tissue fresh(slab(), constrained_below(), soft, {}, faces);
+  Tissue fresh(slab(), constrained_below(), soft);
   fresh.cut(slit_at(0.052, 0.012));
   fresh.process_cuts();
   fresh.begin_tick();

@@ -271,7 +271,7 @@ TEST_CASE("short strokes cut as straight as one sweep, through a body that sags"
   for (const double length : {0.06, 0.005, 0.001}) {
     testing::Random random(6);
     Straight tissue(uneven_block(BoxSplit::five_mirrored, 0.2, random),
-                    Scene().fix("z1").touch("z0").gravity({0, 0, -9.81}), soft);
+                    Scene().fix("z1").touch("z0").gravity({0, 0, -9.81}), soft, {}, straight);
     const auto count = static_cast<int>(std::lround(0.06 / length));
     const auto edge = [&](int k, double y) {
       const double x = -0.01 + 0.06 * k / count;
